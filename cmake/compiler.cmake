@@ -1,0 +1,22 @@
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+
+# Checks stay in every build: no -DNDEBUG.
+set(CMAKE_CXX_FLAGS_RELEASE "-O2")
+set(CMAKE_CXX_FLAGS_DEBUG "-O0 -g")
+
+# Linked by our own targets only. It is not exported: whoever uses an installed ropsim chooses their own warnings.
+add_library(ropsim_compiler INTERFACE)
+target_compile_options(ropsim_compiler INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion)
+if(ROPSIM_WERROR)
+    target_compile_options(ropsim_compiler INTERFACE -Werror)
+endif()
+# Pictures must not depend on the compiler: a*b+c is rounded twice, everywhere.
+target_compile_options(ropsim_compiler INTERFACE -ffp-contract=off)
+
+if(ROPSIM_SANITIZE)
+    add_compile_options(-fsanitize=${ROPSIM_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+    add_link_options(-fsanitize=${ROPSIM_SANITIZE})
+endif()

@@ -1,0 +1,23 @@
+# ropsim_layer(NAME [EXCLUDE regex] LINK targets...)
+# The library ropsim_NAME (ropsim::NAME to others) of every .cpp below the current folder.
+function(ropsim_layer name)
+    cmake_parse_arguments(LAYER "" "EXCLUDE" "LINK" ${ARGN})
+    file(GLOB_RECURSE sources CONFIGURE_DEPENDS "*.cpp")
+    if(LAYER_EXCLUDE)
+        list(FILTER sources EXCLUDE REGEX "${LAYER_EXCLUDE}")
+    endif()
+    if(NOT sources)
+        set(sources "${CMAKE_CURRENT_BINARY_DIR}/empty.cpp")
+        file(CONFIGURE OUTPUT "${sources}" CONTENT "// This layer has headers only.\n")
+    endif()
+    add_library(ropsim_${name} STATIC ${sources})
+    add_library(ropsim::${name} ALIAS ropsim_${name})
+    set_target_properties(ropsim_${name} PROPERTIES EXPORT_NAME ${name})
+    target_compile_features(ropsim_${name} PUBLIC cxx_std_20)
+    target_include_directories(ropsim_${name} PUBLIC
+        $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+        $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/generated>
+        $<INSTALL_INTERFACE:include/ropsim>)
+    target_link_libraries(ropsim_${name} PUBLIC ${LAYER_LINK} PRIVATE $<BUILD_INTERFACE:ropsim_compiler>)
+    set_property(GLOBAL APPEND PROPERTY ROPSIM_LAYERS ropsim_${name})
+endfunction()

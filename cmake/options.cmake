@@ -1,0 +1,18 @@
+if(NOT CMAKE_BUILD_TYPE)
+    set(CMAKE_BUILD_TYPE Release CACHE STRING "Release, Debug" FORCE)
+endif()
+option(ROPSIM_TESTS "Build the tests (needs GoogleTest, RapidCheck and Google Benchmark)" ON)
+option(ROPSIM_IMAGES "Build the module that reads and writes images (needs OpenImageIO)" ON)
+option(ROPSIM_WERROR "Treat warnings as errors" ON)
+option(ROPSIM_PCH "Precompile the standard library and GLM headers" OFF)
+set(ROPSIM_SANITIZE "" CACHE STRING "Value for -fsanitize=, e.g. address,undefined or thread")
+
+find_program(ROPSIM_CCACHE ccache)
+if(ROPSIM_CCACHE AND NOT DEFINED CMAKE_CXX_COMPILER_LAUNCHER)
+    set(CMAKE_CXX_COMPILER_LAUNCHER "${ROPSIM_CCACHE}")
+endif()
+
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/bin")
+set(CMAKE_LIBRARY_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/lib")
+set(CMAKE_ARCHIVE_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/lib")
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)

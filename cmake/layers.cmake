@@ -21,3 +21,18 @@ function(ropsim_layer name)
     target_link_libraries(ropsim_${name} PUBLIC ${LAYER_LINK} PRIVATE $<BUILD_INTERFACE:ropsim_compiler>)
     set_property(GLOBAL APPEND PROPERTY ROPSIM_LAYERS ropsim_${name})
 endfunction()
+
+# ropsim_module(NAME FOLDER targets...): the sources of FOLDER as ropsim_NAME.so, loaded at run time when it is needed.
+function(ropsim_module name folder)
+    file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${folder}/*.cpp")
+    if(NOT sources)
+        return()
+    endif()
+    add_library(ropsim_${name} MODULE ${sources})
+    set_target_properties(ropsim_${name} PROPERTIES PREFIX ""
+        LIBRARY_OUTPUT_DIRECTORY "${CMAKE_LIBRARY_OUTPUT_DIRECTORY}/ropsim")
+    target_compile_features(ropsim_${name} PRIVATE cxx_std_20)
+    target_include_directories(ropsim_${name} PRIVATE "${PROJECT_SOURCE_DIR}" "${PROJECT_BINARY_DIR}/generated")
+    target_link_libraries(ropsim_${name} PRIVATE ${ARGN} ropsim_compiler)
+    set_property(GLOBAL APPEND PROPERTY ROPSIM_MODULES ropsim_${name})
+endfunction()

@@ -1,0 +1,64 @@
+// The contract between the pipeline and a k-buffer: *what* a fragment does to the entries of its pixel (ModifyProgram,
+// implemented in models/programs), and *when* and under which protection that happens (KBufferDesign, implemented in
+// models/kbuffers). The pipeline knows nothing else about either.
+//
+// Layout of a pixel: `k` entries of `floats_per_entry` floats, entry 0 first, packed without gaps and padded to a multiple
+// of four floats. Four consecutive floats are one RGBA32F render target, so rgbz uses one target per entry and z packs
+// four depths into each (specification 004, section 2.3).
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace pipeline {
+
+/// Operations of one run of a program for one fragment, in scalar ALU operations.
+struct ProgramCost {
+    std::uint32_t operations = 0;
+};
+
+enum class OrderNeed : std::uint8_t { any, primitive_order };
+
+/// A pure function over (entries of a pixel, fragment). Source: Bavoil 2007, section 4.3 (A5).
+class ModifyProgram {
+  public:
+    virtual ~ModifyProgram() = default;
+
+    virtual std::string_view id() const      = 0;
+    virtual std::string_view summary() const = 0;
+    /// Entries per pixel, 1 to 64.
+    std::uint32_t k() const { return k_; }
+    /// Floats per entry: 1 (depth) to 4.
+    std::uint32_t floats_per_entry() const { return floats_; }
+    /// RGBA32F render targets that hold one pixel: ceil(k * floats_per_entry / 4).
+    std::uint32_t targets() const { return (k_ * floats_ + 3) / 4; }
+    std::uint32_t floats_per_pixel() const { return targets() * 4; }
+    std::uint32_t bytes_per_pixel() const { return targets() * 16; }
+
+    virtual ProgramCost cost() const             = 0;
+    virtual OrderNeed   order_need() const       = 0;
+    virtual bool        needs_texture() const    = 0; ///< fetches a table: no programmable blender can run it
+    virtual bool        needs_colour() const     = 0; ///< reads more of the fragment than its depth
+    /// Index of the depth within an entry.
+    virtual std::uint32_t depth_slot() const = 0;
+
+    /// Initial content of one pixel: floats_per_pixel() floats.
+    virtual void clear(float* pixel) const = 0;
+    /// Runs the program for one fragment. `fragment` has floats_per_entry() floats in the entry's own layout.
+    /// Returns true when it changed the pixel.
+    virtual bool insert(float* pixel, const float* fragment) const = 0;
+    /// Lays a shaded fragment out as an entry: floats_per_entry() floats.
+    virtual void make_entry(const float* rgba, float depth, float* entry) const = 0;
+
+  protected:
+    ModifyProgram(std::uint32_t k, std::uint32_t floats) : k_(k), floats_(floats) {}
+
+  private:
+    std::uint32_t k_;
+    std::uint32_t floats_;
+};
+
+} // namespace pipeline

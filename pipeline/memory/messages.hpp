@@ -17,6 +17,7 @@ struct MemoryRequest {
     std::uint64_t address = 0;
     std::uint32_t bytes   = 0; ///< 1 to 4096
     std::uint32_t tag     = 0; ///< comes back in the response; chosen by the client
+    std::uint32_t draw    = 0; ///< draw the bytes are booked to: index into Frame::draws
     MemoryClient  client  = MemoryClient::index;
     bool          write   = false; ///< writes are posted: no response
 };

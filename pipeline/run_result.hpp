@@ -1,0 +1,100 @@
+// What one run of one design on one frame produced: pixels, hazards, cycles and every counter.
+#pragma once
+
+#include "sim/time.hpp"
+
+#include <array>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace pipeline {
+
+/// Cause of a read that missed the update of a predecessor at its pixel (specification 004, section 7.1).
+enum class HazardClass : std::uint8_t {
+    h1_in_flight,  ///< the predecessor was still in a shader pipe or in the reorder buffer
+    h2_write_path, ///< it was retired, but its store was not observable yet
+    h3_stale_line, ///< it was observable, but the texture cache line was older
+    h4_torn_read,  ///< the render targets of one read held different versions
+};
+
+/// One victim with the predecessor whose update it overwrites: the latest one that its read missed.
+struct HazardPair {
+    std::uint16_t x = 0, y = 0;
+    HazardClass   kind      = HazardClass::h1_in_flight;
+    std::uint32_t victim    = 0; ///< QuadId
+    std::uint32_t aggressor = 0; ///< QuadId
+    std::uint32_t missing   = 0; ///< predecessors missing from the value read (staleness in versions)
+    sim::Cycle    read      = 0; ///< core cycle the victim sampled its value
+    sim::Cycle    write     = 0; ///< core cycle the aggressor's store was applied
+};
+
+struct HazardCounts {
+    std::uint64_t h1 = 0, h2 = 0, h3 = 0, h4 = 0; ///< victim fragments; each is counted in one class
+    std::uint64_t pixels = 0;                     ///< distinct pixels with at least one victim
+    std::uint64_t total() const { return h1 + h2 + h3 + h4; }
+};
+
+/// Difference of layer i to the reference, in pixels.
+struct LayerErrors {
+    std::uint64_t missing   = 0; ///< entry of the reference found in no layer of the run
+    std::uint64_t duplicate = 0; ///< entry found more often than in the reference
+    std::uint64_t unsorted  = 0; ///< nearer than the layer before it
+};
+
+/// Counters of one pass as the design executed it (one design may execute a frame's pass several times).
+struct PassResult {
+    std::string            name;
+    sim::Cycle             first_cycle = 0, cycles = 0;
+    nlohmann::ordered_json counters; ///< stage name -> counters of this pass
+};
+
+/// Counters of one draw, over all passes.
+struct DrawResult {
+    std::string            name;
+    std::uint32_t          draw = 0;
+    nlohmann::ordered_json counters;
+};
+
+struct RunResult {
+    std::string design;
+    double      core_mhz = 0;
+    sim::Cycle  cycles   = 0; ///< core cycles from the first command to the last byte written
+    std::uint64_t fragments = 0; ///< fragments that reached the k-buffer (or depth test), over all passes
+
+    HazardCounts               hazards;
+    std::vector<HazardPair>    pairs;           ///< the first `pairs_kept` in order of the victim's store
+    std::vector<std::uint64_t> hazard_distance; ///< bin b: hazards with distance in [2^b, 2^(b+1)) quads
+    std::uint64_t              max_staleness = 0;
+    double                     mean_staleness = 0;
+    std::uint64_t              lost_updates   = 0; ///< fragments whose store was overwritten by a stale value
+    std::uint64_t              wrong_pixels   = 0; ///< pixels that differ from the reference in any bit
+    std::uint64_t              unexplained_pixels = 0; ///< wrong pixels without a recorded hazard: 0 by law
+    std::uint64_t              lost_fragments = 0; ///< entries of the reference that no layer of the run holds
+    std::vector<LayerErrors>   layers;
+
+    // Per pixel, row 0 first, width * height entries.
+    std::vector<float>         kbuffer;       ///< floats_per_pixel floats each; empty when the frame has no k-buffer
+    std::vector<float>         colour;        ///< RGBA of the "colour" surface; empty when the frame has none
+    std::vector<std::uint8_t>  hazard_mask;   ///< bit i: hazard class i happened here; empty when there was none
+    std::vector<std::uint8_t>  wrong_mask;    ///< 1 where the pixel differs from the reference
+
+    // What was built and left out on this machine for this design.
+    std::vector<std::string>                          built;
+    std::vector<std::pair<std::string, std::string>> left_out; ///< unit, reason
+
+    nlohmann::ordered_json  stages;  ///< stage -> { "params", "counters", "activity" (cycles by activity) }, units summed
+    nlohmann::ordered_json  stalls;  ///< stage -> activity -> fraction of elapsed time
+    nlohmann::ordered_json  caches;  ///< cache -> { accesses, hits, misses, hit_rate }
+    nlohmann::ordered_json  bytes;   ///< link -> bytes, and bytes per fragment
+    nlohmann::ordered_json  area;    ///< area proxies: bits of state, comparators, ALU lanes
+    std::vector<PassResult> passes;
+    std::vector<DrawResult> draws;
+
+    // Cost of the run itself; everything else above is the same on every machine and for any thread count.
+    double        host_seconds = 0;
+    std::uint64_t host_ticks   = 0;
+};
+
+} // namespace pipeline

@@ -1,0 +1,22 @@
+#!/usr/bin/env bash
+# compilers_agree.sh BUILD_DIR BUILD_DIR: two builds of ropsim, by different compilers, must report the same results.
+set -euo pipefail
+
+[[ $# -eq 2 ]] || { echo "usage: compilers_agree.sh BUILD_DIR BUILD_DIR" >&2; exit 2; }
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+# A result may differ in `host` (seconds) and in what it says about the build.
+result() {
+    "$1/bin/ropsim" compare gen:discs --size 128x128 --json |
+        python3 -c 'import json, sys
+document = json.load(sys.stdin)
+document.pop("host"); document.pop("ropsim")
+print(json.dumps(document, indent=1, sort_keys=True))'
+}
+
+result "$1" >"$work/first.json"
+result "$2" >"$work/second.json"
+diff -u "$work/first.json" "$work/second.json" | head -40
+cmp -s "$work/first.json" "$work/second.json"
+echo "the results of $1 and $2 are equal ($(wc -l <"$work/first.json") lines)"

@@ -25,4 +25,5 @@ const std::string_view @name@ = R"ropsim(@text@)ropsim";
 ]])
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${file}")
     target_sources(${target} PRIVATE "${generated}/ropsim_${name}.cpp")
+    set_source_files_properties("${generated}/ropsim_${name}.cpp" PROPERTIES COMPILE_OPTIONS -Wno-overlength-strings)
 endfunction()

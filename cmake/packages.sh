@@ -41,8 +41,7 @@ install_packages() {
     # The list of packages is fetched only when what is there does not do.
     if ! apt_get install "${missing[@]}" >"$log" 2>&1; then
         if ! { apt_get update && apt_get install "${missing[@]}"; } >"$log" 2>&1; then
-            grep '^E:' "$log" | head -3 >&2 || true
-            stop "cannot install packages (no network?): apt-get says more in $log"
+            stop "cannot install packages (no network?): $(grep -m1 '^E:' "$log" || tail -n1 "$log") (all of it: $log)"
         fi
     fi
     rm -f "$log"

@@ -8,11 +8,12 @@ trap 'rm -rf "$work"' EXIT
 
 # A result may differ in `host` (seconds) and in what it says about the build.
 result() {
-    "$1/bin/ropsim" compare gen:discs --size 128x128 --json |
-        python3 -c 'import json, sys
+    "$1/bin/ropsim" compare gen:discs --size 128x128 --json >"$work/raw.json" || { echo "$1/bin/ropsim failed" >&2; exit 1; }
+    python3 -c 'import json, sys
 document = json.load(sys.stdin)
-document.pop("host"); document.pop("ropsim")
-print(json.dumps(document, indent=1, sort_keys=True))'
+document.pop("host")
+document.pop("ropsim")
+print(json.dumps(document, indent=1, sort_keys=True))' <"$work/raw.json"
 }
 
 result "$1" >"$work/first.json"

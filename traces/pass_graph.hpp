@@ -1,0 +1,47 @@
+// The passes of a rendering method, and what is left of them when those that nobody reads are taken out.
+#pragma once
+
+#include "pipeline/frame.hpp"
+
+#include <string>
+#include <vector>
+
+namespace traces {
+
+/// Names of the surfaces that pipeline::Pass knows.
+inline constexpr const char* depth_surface   = "depth";
+inline constexpr const char* colour_surface  = "colour";
+inline constexpr const char* kbuffer_surface = "kbuffer";
+inline constexpr const char* picture_surface = "picture"; ///< what a resolve pass writes
+
+/// Passes in the order of submission. A pass names what it reads and writes; `DepthState` and the flags `colour` and
+/// `kbuffer` of pipeline::Pass follow from those names and from add_draw's arguments.
+class PassGraph {
+  public:
+    /// `frame` holds what is common to all passes: scene, view, program, formats. Its passes, needs and left_out are
+    /// replaced by lower().
+    explicit PassGraph(pipeline::Frame frame);
+
+    void add_clear(std::string name, std::vector<std::string> writes);
+    /// `reads` and `writes` take depth, colour and kbuffer: reading depth tests against it, writing depth stores it,
+    /// writing kbuffer runs the program (which reads the entries as well).
+    void add_draw(std::string name, std::vector<std::string> reads, std::vector<std::string> writes,
+                  std::vector<std::uint32_t> draws);
+    void add_resolve(std::string name, std::vector<std::string> reads, std::vector<std::string> writes);
+    /// This surface is what the frame is for.
+    void output(std::string surface);
+    /// Something the method could have had and does not use here.
+    void leave_out(std::string unit, std::string reason);
+
+    /// Takes out passes that draw nothing and passes (and writes of passes) that no later pass and no output reads, then
+    /// collects Needs and left_out from what remains.
+    pipeline::Frame lower() const;
+
+  private:
+    pipeline::Frame                frame_;
+    std::vector<pipeline::Pass>    passes_;
+    std::vector<std::string>       outputs_;
+    std::vector<pipeline::LeftOut> left_out_;
+};
+
+} // namespace traces

@@ -4,7 +4,6 @@ endif()
 option(ROPSIM_TESTS "Build the tests (needs GoogleTest, RapidCheck and Google Benchmark)" ON)
 option(ROPSIM_IMAGES "Build the module that reads and writes images (needs OpenImageIO)" ON)
 option(ROPSIM_WERROR "Treat warnings as errors" ON)
-option(ROPSIM_PCH "Precompile the standard library and GLM headers" OFF)
 option(ROPSIM_FUZZ "Build the libFuzzer programs of tests/fuzz (needs clang)" OFF)
 set(ROPSIM_SANITIZE "" CACHE STRING "Value for -fsanitize=, e.g. address,undefined or thread")
 

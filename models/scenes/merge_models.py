@@ -14,7 +14,7 @@ import sys
 # Every model stands on the plane y = 0; they overlap as seen from +z, so that a pixel sees up to a dozen surfaces.
 PLACED = [
     ("asteroid-high", (0.50, 0.47, 0.44, 0.8), 0.85, 0, 1.15, -1.5),
-    ("horse", (0.55, 0.33, 0.18, 0.6), 1.25, 30, -0.75, -1.0),
+    ("horse", (0.55, 0.33, 0.18, 0.6), 1.6, 30, -0.9, -1.2),
     ("bunny", (0.85, 0.80, 0.72, 0.5), 1.0, 0, 0.1, 0.0),
     ("cat", (0.25, 0.45, 0.70, 0.4), 0.42, -20, 0.55, 1.0),
 ]

@@ -1,0 +1,140 @@
+// The front half of the GPU, from the draw call to the triangle that is ready to be rasterized.
+//
+//   command processor -> index fetch -> vertex reuse ----------------------> primitive assembly -> clip and cull -> setup
+//                        (or counter)      `-> vertex fetch -> vertex shader -'
+//
+// The index fetch unit is built only for frames that read an index buffer.
+#pragma once
+
+#include "pipeline/geometry/clip_cull.hpp"
+#include "pipeline/geometry/command_processor.hpp"
+#include "pipeline/geometry/index_fetch.hpp"
+#include "pipeline/geometry/primitive_assembly.hpp"
+#include "pipeline/geometry/triangle_setup.hpp"
+#include "pipeline/geometry/vertex_fetch.hpp"
+#include "pipeline/geometry/vertex_reuse.hpp"
+#include "pipeline/geometry/vertex_shader.hpp"
+
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+
+namespace pipeline {
+
+class MemorySystem;
+
+struct GeometryParams {
+    CommandProcessorParams  command_processor;
+    IndexFetchParams        index_fetch;
+    VertexReuseParams       vertex_reuse;
+    VertexFetchParams       vertex_fetch;
+    VertexShaderParams      vertex_shader;
+    PrimitiveAssemblyParams primitive_assembly;
+    ClipCullParams          clip_cull;
+    TriangleSetupParams     triangle_setup;
+
+    static constexpr auto fields() {
+        using P = GeometryParams;
+        return std::tuple{sim::field<&P::command_processor>("Command processor"),
+                          sim::field<&P::index_fetch>("Index fetch unit"),
+                          sim::field<&P::vertex_reuse>("Post-transform cache"),
+                          sim::field<&P::vertex_fetch>("Vertex fetch unit and pre-transform cache"),
+                          sim::field<&P::vertex_shader>("Vertex shader units"),
+                          sim::field<&P::primitive_assembly>("Primitive assembly"),
+                          sim::field<&P::clip_cull>("Clipping and culling"),
+                          sim::field<&P::triangle_setup>("Triangle setup")};
+    }
+};
+static_assert(sim::fully_described<GeometryParams>);
+
+/// Counters of all stages; two copies can be subtracted (sim::difference) to get those of a pass.
+struct GeometryStats {
+    CommandProcessorStats  command_processor;
+    IndexFetchStats        index_fetch; ///< of the primitive counter when that is built instead
+    VertexReuseStats       vertex_reuse;
+    VertexFetchStats       vertex_fetch;
+    VertexShaderStats      vertex_shader;
+    PrimitiveAssemblyStats primitive_assembly;
+    ClipCullStats          clip_cull;
+    TriangleSetupStats     triangle_setup;
+
+    static constexpr auto fields() {
+        using S = GeometryStats;
+        return std::tuple{sim::field<&S::command_processor>("Command processor"),
+                          sim::field<&S::index_fetch>("Index fetch unit or primitive counter"),
+                          sim::field<&S::vertex_reuse>("Post-transform cache"),
+                          sim::field<&S::vertex_fetch>("Vertex fetch unit and pre-transform cache"),
+                          sim::field<&S::vertex_shader>("Vertex shader units"),
+                          sim::field<&S::primitive_assembly>("Primitive assembly"),
+                          sim::field<&S::clip_cull>("Clipping and culling"),
+                          sim::field<&S::triangle_setup>("Triangle setup")};
+    }
+};
+static_assert(sim::fully_described<GeometryStats>);
+
+/// What one draw, all instances and passes together, cost the front.
+struct GeometryDrawStats {
+    sim::Counter primitives, vertices_referenced, vertex_shader_runs, culled, clipped, triangles, index_bytes, vertex_bytes;
+
+    /// Shader runs per primitive; 0 without primitives.
+    double acmr() const {
+        return primitives == 0 ? 0.0
+                               : static_cast<double>(vertex_shader_runs.value) / static_cast<double>(primitives.value);
+    }
+
+    static constexpr auto fields() {
+        using S = GeometryDrawStats;
+        return std::tuple{
+            sim::field<&S::primitives>("Primitives").unit("primitives"),
+            sim::field<&S::vertices_referenced>("Corners of primitives").unit("vertices"),
+            sim::field<&S::vertex_shader_runs>("Vertices shaded; over primitives: the ACMR").unit("vertices"),
+            sim::field<&S::culled>("Primitives that were culled").unit("primitives"),
+            sim::field<&S::clipped>("Primitives that were clipped").unit("primitives"),
+            sim::field<&S::triangles>("Triangles to be rasterized").unit("triangles"),
+            sim::field<&S::index_bytes>("Bytes of index buffer requested").unit("bytes"),
+            sim::field<&S::vertex_bytes>("Bytes of vertices requested").unit("bytes")};
+    }
+};
+static_assert(sim::fully_described<GeometryDrawStats>);
+
+class GeometryFront {
+  public:
+    /// Builds what `needs` asks for; components are named "geometry.command_processor" and so on. `frame` must outlive
+    /// this.
+    GeometryFront(sim::Simulation& simulation, const sim::Clock& clock, const GeometryParams& params, const Frame& frame,
+                  const Needs& needs);
+
+    /// Links the memory ports to the crossbar.
+    void attach(MemorySystem& memory);
+    /// To be linked to the rasterizer.
+    sim::Out<TriangleTask>& triangles_out() { return triangle_setup_.triangles_out; }
+
+    /// Begins a pass at the next clock edge; then call Simulation::run(). `draws` is the list that DrawRange::draw counts
+    /// (and to which memory traffic is booked); `ranges`, some of stream.draws in order, or all of them, is what to draw.
+    /// Everything must stay unchanged until the run ends.
+    void start(const FragmentStream& stream, std::span<const Draw> draws);
+    void start(const FragmentStream& stream, std::span<const Draw> draws, std::span<const DrawRange> ranges);
+
+    bool              has_index_fetch() const { return index_fetch_ != nullptr; }
+    GeometryStats     stats() const;
+    GeometryDrawStats draw_stats(std::uint32_t draw) const;
+    /// Stage name -> params, counters, activity in cycles; only stages that are built.
+    nlohmann::ordered_json report() const;
+
+  private:
+    void link_index_path();
+    void link_vertex_path(const GeometryParams& params);
+
+    const Frame*                      frame_;
+    GeometryPass                      pass_;
+    CommandProcessor                  command_processor_;
+    std::unique_ptr<IndexFetch>       index_fetch_;
+    std::unique_ptr<PrimitiveCounter> primitive_counter_;
+    VertexReuse                       vertex_reuse_;
+    VertexFetch                       vertex_fetch_;
+    VertexShader                      vertex_shader_;
+    PrimitiveAssembly                 primitive_assembly_;
+    ClipCull                          clip_cull_;
+    TriangleSetup                     triangle_setup_;
+};
+
+} // namespace pipeline

@@ -1,0 +1,55 @@
+// What travels between the stages of the geometry front.
+//
+// A `range` is an index into FragmentStream::draws: one instance of one draw. Primitives and triangles are numbered as in
+// the stream. Vertices are known by their sequence number: the running count of vertex shader runs since the start of
+// the pass, beginning with 1.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace pipeline {
+
+/// Command processor -> index fetch.
+struct DrawCommand {
+    std::uint32_t range = 0;
+};
+
+/// Index fetch -> vertex reuse: a primitive with the numbers of its vertices within the draw's geometry.
+struct IndexedPrimitive {
+    std::uint32_t                primitive = 0;
+    std::uint32_t                range     = 0;
+    std::array<std::uint32_t, 3> vertices{};
+};
+
+/// Vertex reuse -> vertex fetch: a vertex that has to be shaded.
+struct VertexRequest {
+    std::uint32_t sequence = 0;
+    std::uint32_t range    = 0;
+    std::uint32_t vertex   = 0;
+};
+
+/// Vertex reuse -> primitive assembly: a primitive with the sequence numbers of its shaded vertices.
+struct ReusedPrimitive {
+    std::uint32_t                primitive = 0;
+    std::uint32_t                range     = 0;
+    std::array<std::uint32_t, 3> sequences{};
+};
+
+/// Vertex fetch -> vertex shader -> primitive assembly; in order of the sequence numbers.
+struct VertexTask {
+    std::uint32_t sequence = 0;
+};
+
+/// Primitive assembly -> clipping and culling.
+struct AssembledPrimitive {
+    std::uint32_t primitive = 0;
+    std::uint32_t range     = 0;
+};
+
+/// Clipping and culling -> triangle setup -> rasterizer: an index into FragmentStream::triangles.
+struct TriangleTask {
+    std::uint32_t triangle = 0;
+};
+
+} // namespace pipeline

@@ -1,0 +1,125 @@
+// Which vertices of a triangle list have been shaded already: models of the post-transform cache without time.
+//
+// Each model gives every shader run a sequence number, counting from 1, and tells for each corner of a triangle which run
+// produced it. All are exact replacements of each other.
+// Sources: specification 004, sections 2.1, 9.2; the warp and group rule is that of meshoptimizer's vertex cache
+// analyzer; the batches are what Mesa's llvmpipe was measured to do.
+#pragma once
+
+#include "sim/described.hpp"
+
+#include <array>
+#include <cstdint>
+#include <tuple>
+#include <variant>
+#include <vector>
+
+namespace pipeline {
+
+enum class ReuseModel : std::uint8_t {
+    fifo,  ///< the last `entries` shaded vertices
+    batch, ///< fifo that is emptied when a warp of vertices or a group of triangles is full
+    mesa,  ///< runs of 1023 indices, each with a direct-mapped table of 256 entries
+};
+
+} // namespace pipeline
+
+template <>
+struct sim::EnumNames<pipeline::ReuseModel> {
+    static constexpr std::array<std::string_view, 3> names{"fifo", "batch", "mesa"};
+};
+
+namespace pipeline {
+
+struct VertexReuseParams {
+    ReuseModel    model           = ReuseModel::fifo;
+    std::uint32_t entries         = 24;
+    std::uint32_t warp_vertices   = 32;
+    std::uint32_t group_triangles = 0;
+    std::uint32_t vertices_per_clk = 2;
+
+    static constexpr auto fields() {
+        using P = VertexReuseParams;
+        return std::tuple{
+            sim::field<&P::model>("Which vertices are still held"),
+            sim::field<&P::entries>("Shaded vertices held (fifo, batch)").unit("vertices").range(3, 1U << 20U),
+            sim::field<&P::warp_vertices>("Vertices shaded together, then forgotten (batch); 0: no limit")
+                .unit("vertices")
+                .at_most(1U << 20U),
+            sim::field<&P::group_triangles>("Triangles drawn together, then forgotten (batch); 0: no limit")
+                .unit("triangles")
+                .at_most(1U << 20U),
+            sim::field<&P::vertices_per_clk>("Vertices sent to be shaded").unit("vertices/cycle").range(1, 64)};
+    }
+};
+static_assert(sim::fully_described<VertexReuseParams>);
+
+/// The shader runs that produced the corners of a triangle, and which of them this triangle caused.
+struct ReuseResult {
+    std::array<std::uint32_t, 3> sequences{};
+    std::uint8_t                 missed = 0; ///< bit i: corner i is shaded for this triangle
+};
+
+/// First in, first out, with optional limits of a warp and of a primitive group.
+class FifoReuse {
+  public:
+    /// `warp_vertices` and `group_triangles`: 0 = no limit. entries >= 3.
+    FifoReuse(std::uint32_t entries, std::uint32_t warp_vertices, std::uint32_t group_triangles);
+    void        begin_draw(std::uint32_t vertex_count);
+    ReuseResult triangle(const std::array<std::uint32_t, 3>& vertices);
+    std::uint32_t runs() const { return next_ - 1; } ///< shader runs so far
+
+  private:
+    bool held(std::uint32_t vertex) const {
+        const std::uint32_t run = run_of_[vertex];
+        return run >= flushed_ && next_ - run <= entries_;
+    }
+    void flush();
+
+    std::uint32_t              entries_, warp_vertices_, group_triangles_;
+    std::uint32_t              next_          = 1;
+    std::uint32_t              flushed_       = 1; ///< runs before this one are forgotten
+    std::uint32_t              warp_          = 0; ///< vertices in the present warp
+    std::uint32_t              group_         = 0; ///< triangles in the present group
+    std::vector<std::uint32_t> run_of_;            ///< by vertex: its latest run, 0 = none
+};
+
+/// Mesa's vertex batches.
+class MesaReuse {
+  public:
+    static constexpr std::uint32_t run_indices   = 1023;
+    static constexpr std::uint32_t table_entries = 256;
+
+    void          begin_draw(bool indexed);
+    ReuseResult   triangle(const std::array<std::uint32_t, 3>& vertices);
+    std::uint32_t runs() const { return next_ - 1; }
+
+  private:
+    struct Entry {
+        std::uint32_t vertex = 0;
+        std::uint32_t run    = 0;
+    };
+    std::uint32_t                    next_    = 1;
+    std::uint32_t                    flushed_ = 1;
+    std::uint32_t                    indices_ = 0; ///< of the present run
+    bool                             indexed_ = true;
+    std::array<Entry, table_entries> table_{};
+};
+
+/// The configured one of them.
+class VertexReuseModel {
+  public:
+    explicit VertexReuseModel(const VertexReuseParams& params);
+    /// Forgets everything; vertices of the coming triangles are below `vertex_count`.
+    void begin_draw(std::uint32_t vertex_count, bool indexed);
+    ReuseResult triangle(const std::array<std::uint32_t, 3>& vertices) {
+        if (FifoReuse* fifo = std::get_if<FifoReuse>(&model_)) return fifo->triangle(vertices);
+        return std::get_if<MesaReuse>(&model_)->triangle(vertices);
+    }
+    std::uint32_t runs() const;
+
+  private:
+    std::variant<FifoReuse, MesaReuse> model_;
+};
+
+} // namespace pipeline

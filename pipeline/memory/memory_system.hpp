@@ -1,0 +1,78 @@
+// Everything behind the units' memory ports: the partitions, and the crossbar if a unit needs it.
+//
+// A client of the crossbar calls attach(); a ROP partition, which sits in front of "its" memory partition, calls
+// attach_rop(). A client must always be able to take the answers to what it asked for, or the memory behind it stops.
+#pragma once
+
+#include "pipeline/memory/memory_controller.hpp"
+#include "pipeline/memory/memory_hub.hpp"
+
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+
+namespace pipeline {
+
+struct MemoryParams {
+    std::uint32_t          partitions = 4;
+    double                 bandwidth  = 51.2;
+    std::uint32_t          interleave = 256;
+    double                 clock_mhz  = 0;
+    MemoryHubParams        hub;
+    MemoryControllerParams controller;
+
+    static constexpr auto fields() {
+        return std::tuple{
+            sim::field<&MemoryParams::partitions>("Memory partitions, one DRAM channel each").range(1, 64),
+            sim::field<&MemoryParams::bandwidth>("Peak bandwidth of all partitions together")
+                .unit("GB/s")
+                .range(1e-3, 1e5),
+            sim::field<&MemoryParams::interleave>("Consecutive bytes in one partition; a power of two")
+                .unit("bytes")
+                .range(32, 1U << 20U),
+            sim::field<&MemoryParams::clock_mhz>("Clock of the partitions; 0: that of the core").unit("MHz").range(0, 1e5),
+            sim::field<&MemoryParams::hub>("Crossbar"), sim::field<&MemoryParams::controller>("Partition")};
+    }
+};
+static_assert(sim::fully_described<MemoryParams>);
+
+class MemorySystem {
+  public:
+    /// Components are named "memory.hub" and "memory.partition0"...
+    MemorySystem(sim::Simulation& simulation, const sim::Clock& core, const MemoryParams& params);
+
+    /// Links a client to the crossbar. A request of such a client must lie within one interleave block.
+    void attach(sim::Out<MemoryRequest>& requests, sim::In<MemoryResponse>& responses);
+    /// Links a ROP partition to its memory partition; every address counts as lying there.
+    void attach_rop(std::uint32_t partition, sim::Out<MemoryRequest>& requests, sim::In<MemoryResponse>& responses);
+
+    std::uint32_t partitions() const { return params_.partitions; }
+    /// The partition in which `address` lies.
+    std::uint32_t       partition_of(std::uint64_t address) const;
+    const MemoryParams& params() const { return params_; }
+
+    bool has_hub() const { return hub_ != nullptr; }
+    /// Core cycles from the send of a lone read of `bytes` by a client of the crossbar (or by a ROP partition) to the
+    /// edge at which its answer can be received, the row being closed and the partitions on the core clock.
+    sim::Cycle unloaded_latency(std::uint32_t bytes) const;
+    sim::Cycle unloaded_rop_latency(std::uint32_t bytes) const;
+
+    MemoryHubStats        hub_stats() const; ///< zeros without a crossbar
+    MemoryControllerStats controller_stats() const; ///< sum over the partitions
+    MemoryControllerStats partition_stats(std::uint32_t partition) const;
+    /// Bytes booked to a draw, by client, over all partitions.
+    MemoryBytes draw_bytes(std::uint32_t draw) const;
+    /// "memory_hub" (if built) and "memory_partition": params, counters, activity in cycles, units summed.
+    nlohmann::ordered_json report() const;
+
+  private:
+    MemoryHub& hub();
+
+    sim::Simulation&                               simulation_;
+    const sim::Clock&                              core_;
+    const sim::Clock*                              clock_;
+    MemoryParams                                   params_;
+    std::unique_ptr<MemoryHub>                     hub_;
+    std::vector<std::unique_ptr<MemoryController>> controllers_;
+};
+
+} // namespace pipeline

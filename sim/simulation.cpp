@@ -62,7 +62,8 @@ void ChannelBase::wake_sender() {
         simulation_->wake(*sender_, simulation_->now() + 1);
 }
 
-Simulation::Simulation(std::uint64_t seed, Mode mode) : seed_(seed), mode_(mode), shuffle_(seed, "tick order") {}
+Simulation::Simulation(std::uint64_t seed, Mode mode, std::uint64_t shuffle_seed)
+    : seed_(seed), mode_(mode), shuffle_(shuffle_seed, "tick order") {}
 
 Simulation::~Simulation() = default;
 

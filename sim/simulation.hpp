@@ -34,7 +34,8 @@ class DeadlockError : public std::logic_error {
 
 class Simulation {
   public:
-    explicit Simulation(std::uint64_t seed = 1, Mode mode = Mode::normal);
+    /// `shuffle_seed` chooses the order of ticks in Mode::shuffled and nothing else.
+    explicit Simulation(std::uint64_t seed = 1, Mode mode = Mode::normal, std::uint64_t shuffle_seed = 1);
     ~Simulation();
     Simulation(const Simulation&)            = delete;
     Simulation& operator=(const Simulation&) = delete;

@@ -1,0 +1,177 @@
+#include "reports/csv.hpp"
+
+#include "reports/flatten.hpp"
+#include "reports/run_numbers.hpp"
+#include "sim/described.hpp"
+
+#include <algorithm>
+#include <unordered_map>
+
+namespace reports {
+
+using nlohmann::ordered_json;
+using pipeline::RunResult;
+
+namespace {
+
+std::string text(std::uint64_t number) { return std::to_string(number); }
+std::string text(double number) { return sim::number_text(number); }
+
+// Rows whose columns become known while they are added: the union of all names, in the order of first appearance.
+class WideTable {
+  public:
+    explicit WideTable(std::vector<std::string> key_columns) : columns_(std::move(key_columns)) {}
+
+    void add_row(std::vector<std::string> keys, const FlatValues& values) {
+        keys.resize(columns_.size());
+        for (const auto& [name, value] : values) {
+            const auto [known, is_new] = index_.try_emplace(name, columns_.size());
+            if (is_new) columns_.push_back(name);
+            if (keys.size() <= known->second) keys.resize(known->second + 1);
+            keys[known->second] = cell_text(value);
+        }
+        rows_.push_back(std::move(keys));
+    }
+
+    Table finish(std::string name) {
+        for (auto& row : rows_) row.resize(columns_.size());
+        return {std::move(name), std::move(columns_), std::move(rows_)};
+    }
+
+  private:
+    std::vector<std::string>                     columns_;
+    std::unordered_map<std::string, std::size_t> index_;
+    std::vector<std::vector<std::string>>        rows_;
+};
+
+// Numbers that every design has; the columns of caches and bytes follow them.
+constexpr std::array<const char*, 19> design_columns{"design",
+                                                     "cycles [core cycles]",
+                                                     "core clock [MHz]",
+                                                     "time [ms]",
+                                                     "frames per second [1/s]",
+                                                     "fragments",
+                                                     "h1 [fragments]",
+                                                     "h2 [fragments]",
+                                                     "h3 [fragments]",
+                                                     "h4 [fragments]",
+                                                     "hazards [fragments]",
+                                                     "hazard pixels [pixels]",
+                                                     "hazards per million [1e-6]",
+                                                     "mean staleness [versions]",
+                                                     "max staleness [versions]",
+                                                     "wrong pixels [pixels]",
+                                                     "unexplained pixels [pixels]",
+                                                     "lost fragments [fragments]",
+                                                     "lost updates [fragments]"};
+
+std::vector<std::string> design_cells(const RunResult& run) {
+    const pipeline::HazardCounts& hazards = run.hazards;
+    return {run.design,
+            text(run.cycles),
+            text(run.core_mhz),
+            text(milliseconds(run)),
+            text(frames_per_second(run)),
+            text(run.fragments),
+            text(hazards.h1),
+            text(hazards.h2),
+            text(hazards.h3),
+            text(hazards.h4),
+            text(hazards.total()),
+            text(hazards.pixels),
+            text(hazards_per_million(run)),
+            text(run.mean_staleness),
+            text(run.max_staleness),
+            text(run.wrong_pixels),
+            text(run.unexplained_pixels),
+            text(run.lost_fragments),
+            text(run.lost_updates)};
+}
+
+std::string hazard_name(pipeline::HazardClass kind) { return "h" + std::to_string(static_cast<int>(kind) + 1); }
+
+} // namespace
+
+std::string Table::text() const {
+    std::string result = sim::csv_line(header);
+    for (const auto& row : rows) result += sim::csv_line(row);
+    return result;
+}
+
+Table designs_table(const Comparison& comparison) {
+    WideTable table({design_columns.begin(), design_columns.end()});
+    for (const RunResult& run : comparison.runs) {
+        ordered_json further;
+        for (std::size_t layer = 0; layer < run.layers.size(); ++layer)
+            further["layer" + std::to_string(layer)] = {{"missing", run.layers[layer].missing},
+                                                        {"duplicate", run.layers[layer].duplicate},
+                                                        {"unsorted", run.layers[layer].unsorted}};
+        further["caches"] = run.caches;
+        further["bytes"]  = run.bytes;
+        further["area"]   = run.area;
+        table.add_row(design_cells(run), flatten(further));
+    }
+    return table.finish("designs.csv");
+}
+
+Table stages_table(const Comparison& comparison) {
+    Table table{"stages.csv", {"design", "stage", "kind", "name", "value"}, {}};
+    for (const RunResult& run : comparison.runs)
+        for (const auto& stage : run.stages.items())
+            for (const auto& kind : stage.value().items())
+                for (const auto& [name, value] : flatten(kind.value()))
+                    table.rows.push_back({run.design, stage.key(), kind.key(), name, cell_text(value)});
+    return table;
+}
+
+Table draws_table(const Comparison& comparison) {
+    WideTable table({"design", "draw", "name"});
+    for (const RunResult& run : comparison.runs)
+        for (const pipeline::DrawResult& draw : run.draws)
+            table.add_row({run.design, text(std::uint64_t{draw.draw}), draw.name}, flatten(draw.counters));
+    return table.finish("draws.csv");
+}
+
+Table passes_table(const Comparison& comparison) {
+    WideTable table({"design", "pass", "name", "first cycle [core cycles]", "cycles [core cycles]"});
+    for (const RunResult& run : comparison.runs)
+        for (std::size_t i = 0; i < run.passes.size(); ++i) {
+            const pipeline::PassResult& pass = run.passes[i];
+            table.add_row({run.design, text(std::uint64_t{i}), pass.name, text(pass.first_cycle), text(pass.cycles)},
+                          flatten(pass.counters));
+        }
+    return table.finish("passes.csv");
+}
+
+Table hazard_pairs_table(const Comparison& comparison) {
+    Table table{"hazard_pairs.csv",
+                {"design", "number", "listed", "hazards", "class", "x [pixels]", "y [pixels]", "victim [quad]",
+                 "aggressor [quad]", "missing [versions]", "read [core cycle]", "write [core cycle]"},
+                {}};
+    for (const RunResult& run : comparison.runs)
+        for (std::size_t i = 0; i < run.pairs.size(); ++i) {
+            const pipeline::HazardPair& pair = run.pairs[i];
+            table.rows.push_back({run.design, text(std::uint64_t{i + 1}), text(std::uint64_t{run.pairs.size()}),
+                                  text(run.hazards.total()), hazard_name(pair.kind), text(std::uint64_t{pair.x}),
+                                  text(std::uint64_t{pair.y}), text(std::uint64_t{pair.victim}),
+                                  text(std::uint64_t{pair.aggressor}), text(std::uint64_t{pair.missing}),
+                                  text(pair.read), text(pair.write)});
+        }
+    return table;
+}
+
+Table hazard_distance_table(const Comparison& comparison) {
+    Table table{"hazard_distance.csv", {"design", "from [quads]", "below [quads]", "hazards [fragments]"}, {}};
+    for (const RunResult& run : comparison.runs)
+        for (std::size_t bin = 0; bin < run.hazard_distance.size(); ++bin)
+            table.rows.push_back({run.design, text(std::uint64_t{1} << bin), text(std::uint64_t{2} << bin),
+                                  text(run.hazard_distance[bin])});
+    return table;
+}
+
+std::vector<Table> all_tables(const Comparison& comparison) {
+    return {designs_table(comparison), stages_table(comparison),       draws_table(comparison),
+            passes_table(comparison),  hazard_pairs_table(comparison), hazard_distance_table(comparison)};
+}
+
+} // namespace reports

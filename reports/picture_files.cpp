@@ -1,0 +1,162 @@
+#include "reports/picture_files.hpp"
+
+#include "reports/atomic_file.hpp"
+#include "reports/pictures.hpp"
+#include "sim/check.hpp"
+
+#include <fmt/format.h>
+#include <functional>
+#include <oneapi/tbb/parallel_for.h>
+#include <optional>
+
+namespace reports {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// Collects what has to be written, so that it can be written on all cores.
+class PictureWriter {
+  public:
+    PictureWriter(const Comparison& comparison, fs::path directory)
+        : comparison_(comparison), directory_(std::move(directory)), size_{comparison.width(), comparison.height()} {
+        if (!comparison.frame->program) return;
+        layout_.emplace(*comparison.frame->program);
+        range_ = depth_range(*layout_, comparison.reference.kbuffer, size_.pixels());
+    }
+
+    void add_overlap() {
+        add_png("overlap.png", "", "fragments per pixel", [this] { return overlap_picture(size_, comparison_.depth_complexity); });
+        add_exr("overlap.exr", [this] {
+            const auto& counts = comparison_.depth_complexity;
+            return Measurement{size_.width, size_.height, {"fragments"}, {counts.begin(), counts.end()}};
+        });
+    }
+
+    void add_frame(const std::string& subject, const FramePixels& pixels) {
+        add_png(fs::path(subject) / "composite.png", subject, "composite",
+                [this, &pixels] { return composite_picture(size_, pixels.composite); });
+        add_exr(fs::path(subject) / "composite.exr", [this, &pixels] {
+            return Measurement{size_.width, size_.height, {"R", "G", "B", "A"}, pixels.composite};
+        });
+    }
+
+    void add_layers(const std::string& subject, const FramePixels& pixels) {
+        if (!layout_ || pixels.kbuffer.empty()) return;
+        for (std::uint32_t layer = 0; layer < layout_->layers(); ++layer) {
+            add_png(fs::path(subject) / fmt::format("layer{}.png", layer), subject, fmt::format("layer {}", layer),
+                    [this, &pixels, layer] { return layer_picture(size_, *layout_, pixels.kbuffer, layer, range_); });
+            files_.back().layer = true;
+        }
+        add_exr(fs::path(subject) / "layers.exr", [this, &pixels] { return layers_measurement(pixels.kbuffer); });
+    }
+
+    void add_hazards(const pipeline::RunResult& run, const FramePixels& pixels) {
+        add_png(fs::path(run.design) / "hazards.png", run.design, "hazards", [this, &run, &pixels] {
+            return hazard_picture(size_, pixels.composite, run.hazard_mask, run.hazards, run.design);
+        });
+    }
+
+    void add_difference(const pipeline::RunResult& run, const FramePixels& pixels, std::uint32_t factor) {
+        const std::string name = fmt::format("difference_x{}.png", factor);
+        add_png(fs::path(run.design) / name, run.design, fmt::format("difference to the reference x {}", factor),
+                [this, &run, &pixels, factor] {
+                    return difference_picture(size_, pixels.composite, comparison_.reference.composite, run.wrong_mask,
+                                              factor, run.design);
+                });
+    }
+
+    std::uint32_t difference_factor() const {
+        DifferenceScale scale;
+        for (const FramePixels& pixels : comparison_.pixels)
+            scale.note(size_, pixels.composite, comparison_.reference.composite);
+        return scale.factor();
+    }
+
+    std::vector<PictureFile> write(const std::atomic<bool>* stop) {
+        oneapi::tbb::parallel_for(std::size_t{0}, jobs_.size(), [&](std::size_t job) {
+            if (stop != nullptr && *stop) throw sim::Interrupted();
+            jobs_[job]();
+        });
+        return std::move(files_);
+    }
+
+  private:
+    void add_png(const fs::path& file, const std::string& subject, std::string title,
+                 std::function<Picture()> make) {
+        files_.push_back({file, subject, std::move(title)});
+        jobs_.emplace_back([path = directory_ / file, make = std::move(make)] { write_png(path, make()); });
+    }
+
+    void add_exr(const fs::path& file, std::function<Measurement()> make) {
+        jobs_.emplace_back([path = directory_ / file, make = std::move(make)] { write_exr(path, make()); });
+    }
+
+    Measurement layers_measurement(std::span<const float> kbuffer) const {
+        Measurement result{size_.width, size_.height, {}, {}};
+        for (std::uint32_t layer = 0; layer < layout_->layers(); ++layer)
+            for (std::uint32_t slot = 0; slot < layout_->entry_floats(); ++slot)
+                result.channels.push_back(fmt::format("layer{}.{}", layer, channel_name(slot)));
+        result.values.reserve(size_.pixels() * result.channels.size());
+        for (std::size_t pixel = 0; pixel < size_.pixels(); ++pixel)
+            for (std::uint32_t layer = 0; layer < layout_->layers(); ++layer) {
+                const auto entry = layout_->entry(kbuffer, pixel, layer);
+                result.values.insert(result.values.end(), entry.begin(), entry.end());
+            }
+        return result;
+    }
+
+    std::string channel_name(std::uint32_t slot) const {
+        if (slot == layout_->depth_slot()) return "Z";
+        if (layout_->has_colour() && slot < 3) return std::string(1, "RGB"[slot]);
+        return fmt::format("value{}", slot);
+    }
+
+    const Comparison&                  comparison_;
+    fs::path                           directory_;
+    Size                               size_;
+    std::optional<KBufferLayout>       layout_;
+    DepthRange                         range_;
+    std::vector<PictureFile>           files_;
+    std::vector<std::function<void()>> jobs_;
+};
+
+// Pictures of an earlier comparison that this one may not have: another factor, more layers.
+void remove_earlier(const fs::path& directory) {
+    std::error_code         ignored;
+    std::vector<fs::path>   earlier;
+    for (const auto& entry : fs::directory_iterator(directory, ignored)) {
+        const std::string name = entry.path().filename().string();
+        if (entry.path().extension() == ".png" && (name.starts_with("difference_x") || name.starts_with("layer")))
+            earlier.push_back(entry.path());
+    }
+    for (const fs::path& path : earlier) fs::remove(path, ignored);
+}
+
+} // namespace
+
+std::vector<PictureFile> write_pictures(const Comparison& comparison, const fs::path& directory,
+                                        const std::atomic<bool>* stop) {
+    require_images();
+    const auto prepare = [&directory](const std::string& subject) {
+        create_directory(directory / subject);
+        remove_earlier(directory / subject);
+    };
+    PictureWriter writer(comparison, directory);
+    writer.add_overlap();
+    prepare("reference");
+    writer.add_frame("reference", comparison.reference);
+    writer.add_layers("reference", comparison.reference);
+    const std::uint32_t factor = writer.difference_factor();
+    for (std::size_t i = 0; i < comparison.runs.size(); ++i) {
+        const pipeline::RunResult& run = comparison.runs[i];
+        prepare(run.design);
+        writer.add_frame(run.design, comparison.pixels[i]);
+        writer.add_hazards(run, comparison.pixels[i]);
+        writer.add_difference(run, comparison.pixels[i], factor);
+        writer.add_layers(run.design, comparison.pixels[i]);
+    }
+    return writer.write(stop);
+}
+
+} // namespace reports

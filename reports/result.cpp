@@ -1,0 +1,202 @@
+#include "reports/result.hpp"
+
+#include "reports/run_numbers.hpp"
+#include "ropsim_build.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace reports {
+
+using nlohmann::ordered_json;
+
+namespace {
+
+ordered_json scene_json(const Comparison& comparison) {
+    const SceneFacts&      scene = comparison.scene;
+    const pipeline::Frame& frame = *comparison.frame;
+    ordered_json           json  = {{"name", scene.name},
+                                    {"hash", scene.hash},
+                                    {"triangles", scene.triangles},
+                                    {"triangles_drawn", scene.triangles_drawn},
+                                    {"vertices", scene.vertices},
+                                    {"draws", scene.draws},
+                                    {"textures", scene.textures},
+                                    {"camera", scene.camera},
+                                    {"width", comparison.width()},
+                                    {"height", comparison.height()},
+                                    {"workload", frame.workload},
+                                    {"notes", scene.notes}};
+    if (frame.program)
+        json["kbuffer"] = {{"program", frame.program->id()},
+                           {"k", frame.program->k()},
+                           {"floats_per_entry", frame.program->floats_per_entry()},
+                           {"bytes_per_pixel", frame.program->bytes_per_pixel()}};
+    return json;
+}
+
+ordered_json gpu_json(const GpuFacts& gpu) {
+    ordered_json origins = ordered_json::object();
+    for (const auto& [path, origin] : gpu.origins)
+        origins[path] = {{"origin", origin.origin}, {"source", origin.source}, {"note", origin.note}};
+    return {{"name", gpu.name},
+            {"parameters", gpu.parameters.is_null() ? ordered_json::object() : gpu.parameters},
+            {"origins", std::move(origins)}};
+}
+
+// Rates are over the time of the runs themselves, so that they do not depend on how many ran at once.
+ordered_json host_json(const Comparison& comparison) {
+    double       seconds = 0, cycles = 0, fragments = 0;
+    ordered_json runs = ordered_json::array();
+    for (const pipeline::RunResult& run : comparison.runs) {
+        seconds += run.host_seconds;
+        cycles += static_cast<double>(run.cycles);
+        fragments += static_cast<double>(run.fragments);
+        runs.push_back({{"id", run.design}, {"seconds", run.host_seconds}, {"ticks", run.host_ticks}});
+    }
+    const auto rate = [seconds](double count) { return seconds > 0 ? count / seconds : 0.0; };
+    return {{"seconds", comparison.host.seconds},
+            {"front_end_seconds", comparison.host.front_end_seconds},
+            {"cycles_per_second", rate(cycles)},
+            {"fragments_per_second", rate(fragments)},
+            {"peak_bytes", comparison.host.peak_bytes},
+            {"threads", comparison.host.threads},
+            {"designs", std::move(runs)}};
+}
+
+ordered_json left_out_json(const std::vector<std::pair<std::string, std::string>>& left_out) {
+    ordered_json list = ordered_json::array();
+    for (const auto& [unit, reason] : left_out) list.push_back({{"unit", unit}, {"reason", reason}});
+    return list;
+}
+
+ordered_json needs_json(const std::vector<std::string>&                         built,
+                        const std::vector<std::pair<std::string, std::string>>& left_out) {
+    return {{"built", built}, {"left_out", left_out_json(left_out)}};
+}
+
+ordered_json hazards_json(const pipeline::RunResult& run) {
+    const pipeline::HazardCounts& hazards = run.hazards;
+    return {{"h1", hazards.h1},
+            {"h2", hazards.h2},
+            {"h3", hazards.h3},
+            {"h4", hazards.h4},
+            {"total", hazards.total()},
+            {"pixels", hazards.pixels},
+            {"per_million", hazards_per_million(run)},
+            {"pairs_kept", run.pairs.size()},
+            {"mean_staleness", run.mean_staleness},
+            {"max_staleness", run.max_staleness}};
+}
+
+ordered_json layers_json(const pipeline::RunResult& run) {
+    ordered_json list = ordered_json::array();
+    for (std::size_t layer = 0; layer < run.layers.size(); ++layer)
+        list.push_back({{"layer", layer},
+                        {"missing", run.layers[layer].missing},
+                        {"duplicate", run.layers[layer].duplicate},
+                        {"unsorted", run.layers[layer].unsorted}});
+    return list;
+}
+
+ordered_json hazard_distance_json(const pipeline::RunResult& run) {
+    ordered_json list = ordered_json::array();
+    for (std::size_t bin = 0; bin < run.hazard_distance.size(); ++bin)
+        list.push_back({{"from", std::uint64_t{1} << bin},
+                        {"below", std::uint64_t{2} << bin},
+                        {"hazards", run.hazard_distance[bin]}});
+    return list;
+}
+
+ordered_json object_or_empty(const ordered_json& json) { return json.is_null() ? ordered_json::object() : json; }
+
+ordered_json passes_json(const pipeline::RunResult& run) {
+    ordered_json list = ordered_json::array();
+    for (const pipeline::PassResult& pass : run.passes)
+        list.push_back({{"name", pass.name},
+                        {"first_cycle", pass.first_cycle},
+                        {"cycles", pass.cycles},
+                        {"counters", object_or_empty(pass.counters)}});
+    return list;
+}
+
+ordered_json draws_json(const pipeline::RunResult& run) {
+    ordered_json list = ordered_json::array();
+    for (const pipeline::DrawResult& draw : run.draws)
+        list.push_back({{"draw", draw.draw}, {"name", draw.name}, {"counters", object_or_empty(draw.counters)}});
+    return list;
+}
+
+// What every run has, in the order of the first.
+template <class T>
+std::vector<T> common_to_all(const std::vector<pipeline::RunResult>& runs, std::vector<T> pipeline::RunResult::*member) {
+    std::vector<T> common;
+    for (const T& item : runs.front().*member) {
+        const auto has = [&](const pipeline::RunResult& run) {
+            return std::find((run.*member).begin(), (run.*member).end(), item) != (run.*member).end();
+        };
+        if (std::all_of(runs.begin(), runs.end(), has)) common.push_back(item);
+    }
+    return common;
+}
+
+struct Needs {
+    std::vector<std::string>                         built;
+    std::vector<std::pair<std::string, std::string>> left_out;
+};
+
+ordered_json design_json(const pipeline::RunResult& run, const Needs& common) {
+    ordered_json json = {{"id", run.design},
+                         {"cycles", run.cycles},
+                         {"core_mhz", run.core_mhz},
+                         {"milliseconds", milliseconds(run)},
+                         {"fps", frames_per_second(run)},
+                         {"fragments", run.fragments},
+                         {"hazards", hazards_json(run)},
+                         {"hazard_distance", hazard_distance_json(run)},
+                         {"wrong_pixels", run.wrong_pixels},
+                         {"unexplained_pixels", run.unexplained_pixels},
+                         {"lost_fragments", run.lost_fragments},
+                         {"lost_updates", run.lost_updates},
+                         {"layers", layers_json(run)},
+                         {"stages", object_or_empty(run.stages)},
+                         {"stalls", object_or_empty(run.stalls)},
+                         {"caches", object_or_empty(run.caches)},
+                         {"bytes", object_or_empty(run.bytes)},
+                         {"area", object_or_empty(run.area)},
+                         {"passes", passes_json(run)},
+                         {"draws", draws_json(run)}};
+    // The comparison's "needs" states what all designs have in common.
+    if (run.built != common.built || run.left_out != common.left_out) json["needs"] = needs_json(run.built, run.left_out);
+    return json;
+}
+
+} // namespace
+
+std::string version_text() { return std::string(ropsim_build::version); }
+
+std::string build_text() {
+    return fmt::format("{}, {}, {}", ropsim_build::git_describe, ropsim_build::compiler, ropsim_build::build_type);
+}
+
+ordered_json result_json(const Comparison& comparison) {
+    ordered_json json = {{"ropsim", {{"version", version_text()}, {"build", build_text()}}},
+                         {"scene", scene_json(comparison)},
+                         {"gpu", gpu_json(comparison.gpu)},
+                         {"seed", comparison.seed},
+                         {"host", host_json(comparison)},
+                         {"needs", needs_json({}, {})},
+                         {"designs", ordered_json::array()}};
+    if (comparison.runs.empty()) return json;
+    const Needs common{common_to_all(comparison.runs, &pipeline::RunResult::built),
+                       common_to_all(comparison.runs, &pipeline::RunResult::left_out)};
+    json["needs"] = needs_json(common.built, common.left_out);
+    for (const pipeline::RunResult& run : comparison.runs) json["designs"].push_back(design_json(run, common));
+    return json;
+}
+
+std::string result_text(const ordered_json& result) {
+    return result.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+} // namespace reports

@@ -1,0 +1,35 @@
+#include "reports/run_numbers.hpp"
+
+namespace reports {
+
+double milliseconds(const pipeline::RunResult& run) {
+    return run.core_mhz > 0 ? static_cast<double>(run.cycles) / (run.core_mhz * 1e3) : 0.0;
+}
+
+double frames_per_second(const pipeline::RunResult& run) {
+    return run.cycles > 0 ? run.core_mhz * 1e6 / static_cast<double>(run.cycles) : 0.0;
+}
+
+double hazards_per_million(const pipeline::RunResult& run) {
+    return run.fragments == 0
+               ? 0.0
+               : 1e6 * static_cast<double>(run.hazards.total()) / static_cast<double>(run.fragments);
+}
+
+double cycles_per_second(const pipeline::RunResult& run) {
+    return run.host_seconds > 0 ? static_cast<double>(run.cycles) / run.host_seconds : 0.0;
+}
+
+std::optional<double> bytes_over(const pipeline::RunResult& run, std::string_view link) {
+    const auto found = run.bytes.find(link);
+    if (found == run.bytes.end() || !found->contains("bytes")) return std::nullopt;
+    return (*found)["bytes"].get<double>();
+}
+
+std::optional<double> bytes_per_fragment(const pipeline::RunResult& run, std::string_view link) {
+    const auto bytes = bytes_over(run, link);
+    if (!bytes || run.fragments == 0) return std::nullopt;
+    return *bytes / static_cast<double>(run.fragments);
+}
+
+} // namespace reports

@@ -1,0 +1,24 @@
+// Numbers of a run that several parts of a report derive.
+#pragma once
+
+#include "pipeline/run_result.hpp"
+
+#include <optional>
+#include <string_view>
+
+namespace reports {
+
+/// Simulated frames per second: core clock over cycles.
+double frames_per_second(const pipeline::RunResult& run);
+/// Simulated milliseconds of the frame.
+double milliseconds(const pipeline::RunResult& run);
+/// Hazards in a million fragments.
+double hazards_per_million(const pipeline::RunResult& run);
+/// Simulated core cycles per second of host time; 0 when it was not measured.
+double cycles_per_second(const pipeline::RunResult& run);
+/// Bytes over a link (a key of RunResult::bytes, for example "dram") per fragment; nothing when there is no such link.
+std::optional<double> bytes_per_fragment(const pipeline::RunResult& run, std::string_view link);
+/// All bytes over a link.
+std::optional<double> bytes_over(const pipeline::RunResult& run, std::string_view link);
+
+} // namespace reports

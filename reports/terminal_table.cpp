@@ -1,0 +1,201 @@
+#include "reports/terminal_table.hpp"
+
+#include "reports/numbers.hpp"
+#include "reports/run_numbers.hpp"
+
+#include <algorithm>
+#include <array>
+#include <fmt/format.h>
+
+namespace reports {
+
+using pipeline::RunResult;
+
+namespace {
+
+enum class Emphasis : std::uint8_t { none, bad, good };
+
+struct Cell {
+    std::string text;
+    Emphasis    emphasis = Emphasis::none;
+};
+using Row = std::vector<Cell>;
+
+struct Column {
+    const char* title;
+    const char* unit;
+};
+constexpr std::array<Column, 14> columns{{{"design", ""},
+                                          {"cycles", ""},
+                                          {"time", "ms"},
+                                          {"frames", "/s"},
+                                          {"fragments", ""},
+                                          {"H1", "hazards"},
+                                          {"H2", ""},
+                                          {"H3", ""},
+                                          {"H4", ""},
+                                          {"wrong", "pixels"},
+                                          {"lost", "fragm."},
+                                          {"DRAM", "B/fragm."},
+                                          {"speed", "relative"},
+                                          {"host", "cycles/s"}}};
+
+std::string paint(std::string text, const char* code, bool colour) {
+    return colour ? fmt::format("\033[{}m{}\033[0m", code, text) : text;
+}
+
+std::string count_text(std::uint64_t number, bool exact) {
+    return exact ? with_commas(number) : short_number(static_cast<double>(number));
+}
+
+Cell count_cell(std::uint64_t number, bool exact) { return {count_text(number, exact)}; }
+
+Cell error_cell(std::uint64_t number, bool exact) {
+    return {count_text(number, exact), number > 0 ? Emphasis::bad : Emphasis::none};
+}
+
+std::string optional_text(std::optional<double> number) { return number ? fmt::format("{:.1f}", *number) : "-"; }
+
+Row row_of(const RunResult& run, const RunResult& first, bool exact) {
+    const pipeline::HazardCounts& hazards = run.hazards;
+    const double relative = run.cycles > 0 && first.cycles > 0 ? milliseconds(first) / milliseconds(run) : 0.0;
+    return {{run.design},
+            count_cell(run.cycles, exact),
+            {fmt::format("{:.{}f}", milliseconds(run), milliseconds(run) < 99.95 ? 3 : 1)},
+            {short_number(frames_per_second(run))},
+            count_cell(run.fragments, exact),
+            error_cell(hazards.h1, exact),
+            error_cell(hazards.h2, exact),
+            error_cell(hazards.h3, exact),
+            error_cell(hazards.h4, exact),
+            {count_text(run.wrong_pixels, exact), run.wrong_pixels > 0 ? Emphasis::bad : Emphasis::good},
+            error_cell(run.lost_fragments, exact),
+            {optional_text(bytes_per_fragment(run, "dram"))},
+            {fmt::format("{:.2f}", relative)},
+            {short_number(cycles_per_second(run))}};
+}
+
+using Widths = std::array<std::size_t, columns.size()>;
+
+Widths widths_of(const std::vector<Row>& rows) {
+    Widths widths{};
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+        widths[i] = std::max(std::string_view(columns[i].title).size(), std::string_view(columns[i].unit).size());
+        for (const Row& row : rows) widths[i] = std::max(widths[i], row[i].text.size());
+    }
+    return widths;
+}
+
+std::size_t total(const Widths& widths) {
+    std::size_t sum = 2 * (widths.size() - 1);
+    for (const std::size_t width : widths) sum += width;
+    return sum;
+}
+
+// The first column is text, the others are numbers.
+std::string padded(const std::string& text, std::size_t width, std::size_t column) {
+    return column == 0 ? fmt::format("{:<{}}", text, width) : fmt::format("  {:>{}}", text, width);
+}
+
+std::string line_of(const Row& row, const Widths& widths, bool colour) {
+    std::string line;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+        const std::string text = padded(row[i].text, widths[i], i);
+        line += row[i].emphasis == Emphasis::none ? text
+                                                  : paint(text, row[i].emphasis == Emphasis::bad ? "31" : "32", colour);
+    }
+    return line + "\n";
+}
+
+std::string without_trailing_blanks(std::string line) {
+    line.erase(line.find_last_not_of(' ') + 1);
+    return line;
+}
+
+std::string header_of(const Widths& widths, bool colour) {
+    std::string titles, units;
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+        titles += padded(columns[i].title, widths[i], i);
+        units += padded(columns[i].unit, widths[i], i);
+    }
+    return paint(without_trailing_blanks(titles), "1", colour) + "\n" + without_trailing_blanks(units) + "\n";
+}
+
+// "reason" -> who lacks the unit, in the order of the designs.
+struct LeftOutEntry {
+    std::pair<std::string, std::string> what;
+    std::vector<std::string>            designs;
+};
+
+std::vector<LeftOutEntry> left_out_entries(const Comparison& comparison) {
+    std::vector<LeftOutEntry> entries;
+    for (const RunResult& run : comparison.runs)
+        for (const auto& what : run.left_out) {
+            const auto known = std::find_if(entries.begin(), entries.end(),
+                                            [&](const LeftOutEntry& entry) { return entry.what == what; });
+            if (known == entries.end())
+                entries.push_back({what, {run.design}});
+            else
+                known->designs.push_back(run.design);
+        }
+    return entries;
+}
+
+} // namespace
+
+std::string wrap(const std::string& text, std::size_t columns_allowed, std::size_t indent) {
+    std::string result, line;
+    for (std::size_t begin = 0; begin < text.size();) {
+        const std::size_t end  = std::min(text.find(' ', begin), text.size());
+        const std::string word = text.substr(begin, end - begin);
+        if (!line.empty() && line.size() + 1 + word.size() > columns_allowed) {
+            result += line + "\n";
+            line = std::string(indent, ' ') + word;
+        } else {
+            line += (begin == 0 ? "" : " ") + word;
+        }
+        begin = end + 1;
+    }
+    return result + line + "\n";
+}
+
+std::string heading(const Comparison& comparison, TerminalStyle style) {
+    std::string method = comparison.frame->workload;
+    if (const auto& program = comparison.frame->program)
+        method += fmt::format(" ({}, k = {}, {} B per pixel)", program->id(), program->k(), program->bytes_per_pixel());
+    const std::string text =
+        fmt::format("{}: {} triangles drawn at {} x {}; {}; GPU {}; seed {}", comparison.scene.name,
+                    with_commas(comparison.scene.triangles_drawn), comparison.width(), comparison.height(), method,
+                    comparison.gpu.name, comparison.seed);
+    return wrap(text, style.columns, 2);
+}
+
+std::string designs_text(const Comparison& comparison, TerminalStyle style) {
+    std::vector<Row> rows;
+    Widths           widths{};
+    for (const bool exact : {true, false}) {
+        rows.clear();
+        for (const RunResult& run : comparison.runs) rows.push_back(row_of(run, comparison.runs.front(), exact));
+        widths = widths_of(rows);
+        if (total(widths) <= style.columns) break;
+    }
+    std::string text = header_of(widths, style.colour);
+    for (const Row& row : rows) text += line_of(row, widths, style.colour);
+    return text;
+}
+
+std::string left_out_text(const Comparison& comparison, TerminalStyle style) {
+    const auto  entries = left_out_entries(comparison);
+    std::string text    = entries.empty() ? "Nothing was left out.\n" : "Left out:\n";
+    std::size_t widest  = 0;
+    for (const LeftOutEntry& entry : entries) widest = std::max(widest, entry.what.first.size());
+    for (const LeftOutEntry& entry : entries) {
+        std::string line = fmt::format("  {:<{}}  {}", entry.what.first, widest, entry.what.second);
+        if (entry.designs.size() < comparison.runs.size())
+            line += fmt::format(" ({})", fmt::join(entry.designs, ", "));
+        text += wrap(line, style.columns, widest + 4);
+    }
+    return text;
+}
+
+} // namespace reports

@@ -1,0 +1,66 @@
+#include "models/programs/nearest_k.hpp"
+
+#include "sim/check.hpp"
+
+#include <algorithm>
+
+namespace models {
+
+namespace {
+
+// `floats` per entry is a template parameter because insert() runs once per fragment of every run.
+template <std::uint32_t floats>
+class NearestK final : public pipeline::ModifyProgram {
+  public:
+    explicit NearestK(std::uint32_t k) : ModifyProgram(k, floats) {}
+
+    std::string_view id() const override { return "nearest-k"; }
+    std::string_view summary() const override {
+        return floats == 1 ? "the k smallest depths, sorted (A6)"
+                           : "the k nearest fragments with their colours, sorted (A6)";
+    }
+    /// A compare per entry, and a move out and a move in per float of it (specification 004, section 7.3).
+    pipeline::ProgramCost cost() const override { return {k() * (1 + 2 * floats)}; }
+    pipeline::OrderNeed order_need() const override { return pipeline::OrderNeed::any; }
+    bool needs_texture() const override { return false; }
+    bool needs_colour() const override { return floats > 1; }
+    std::uint32_t depth_slot() const override { return slot; }
+
+    void clear(float* pixel) const override {
+        std::fill_n(pixel, floats_per_pixel(), 0.0F);
+        for (std::uint32_t i = 0; i < k(); ++i) pixel[i * floats + slot] = empty_depth;
+    }
+
+    bool insert(float* pixel, const float* fragment) const override {
+        float* const end = pixel + k() * floats;
+        float* entry = pixel;
+        const float depth = fragment[slot];
+        while (entry != end && !(depth < entry[slot])) entry += floats;
+        if (entry == end) return false;
+        std::array<float, floats> left;
+        std::copy_n(fragment, floats, left.begin());
+        std::swap_ranges(left.begin(), left.end(), entry);
+        // What is left over now arrived before every entry of equal depth behind it, so it goes before them.
+        for (entry += floats; entry != end; entry += floats)
+            if (left[slot] <= entry[slot]) std::swap_ranges(left.begin(), left.end(), entry);
+        return true;
+    }
+
+    void make_entry(const float* rgba, float depth, float* entry) const override {
+        for (std::uint32_t i = 0; i < slot; ++i) entry[i] = rgba[i];
+        entry[slot] = depth;
+    }
+
+  private:
+    static constexpr std::uint32_t slot = floats - 1;
+};
+
+} // namespace
+
+std::shared_ptr<const pipeline::ModifyProgram> make_nearest_k(EntryKind entry, std::uint32_t k) {
+    CHECK(k >= 1 && k <= 64);
+    if (entry == EntryKind::z) return std::make_shared<const NearestK<1>>(k);
+    return std::make_shared<const NearestK<4>>(k);
+}
+
+} // namespace models

@@ -55,7 +55,7 @@ void write_file(const fs::path& path, std::string_view text) {
     file.commit();
 }
 
-void create_directory(const fs::path& directory) {
+void make_directory(const fs::path& directory) {
     std::error_code error;
     fs::create_directories(directory, error);
     if (error && !fs::is_directory(directory))

@@ -29,6 +29,6 @@ class AtomicFile {
 void write_file(const std::filesystem::path& path, std::string_view text);
 
 /// Creates `directory` and its parents, and makes sure that files can be written there.
-void create_directory(const std::filesystem::path& directory);
+void make_directory(const std::filesystem::path& directory);
 
 } // namespace reports

@@ -121,15 +121,20 @@ class PictureWriter {
     std::vector<std::function<void()>> jobs_;
 };
 
+// "layer12.png" for the prefix "layer".
+bool is_numbered_png(const fs::path& path, std::string_view prefix) {
+    const std::string stem = path.stem().string();
+    return path.extension() == ".png" && stem.size() > prefix.size() && stem.starts_with(prefix) &&
+           stem.find_first_not_of("0123456789", prefix.size()) == std::string::npos;
+}
+
 // Pictures of an earlier comparison that this one may not have: another factor, more layers.
 void remove_earlier(const fs::path& directory) {
-    std::error_code         ignored;
-    std::vector<fs::path>   earlier;
-    for (const auto& entry : fs::directory_iterator(directory, ignored)) {
-        const std::string name = entry.path().filename().string();
-        if (entry.path().extension() == ".png" && (name.starts_with("difference_x") || name.starts_with("layer")))
+    std::error_code       ignored;
+    std::vector<fs::path> earlier;
+    for (const auto& entry : fs::directory_iterator(directory, ignored))
+        if (is_numbered_png(entry.path(), "difference_x") || is_numbered_png(entry.path(), "layer"))
             earlier.push_back(entry.path());
-    }
     for (const fs::path& path : earlier) fs::remove(path, ignored);
 }
 
@@ -139,7 +144,7 @@ std::vector<PictureFile> write_pictures(const Comparison& comparison, const fs::
                                         const std::atomic<bool>* stop) {
     require_images();
     const auto prepare = [&directory](const std::string& subject) {
-        create_directory(directory / subject);
+        make_directory(directory / subject);
         remove_earlier(directory / subject);
     };
     PictureWriter writer(comparison, directory);

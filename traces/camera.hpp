@@ -10,7 +10,8 @@
 namespace traces {
 
 /// The view on a scene. `camera` is one of
-///   auto                  the scene's first camera; without one, a camera that sees the whole bounding sphere (vertical
+///   auto                  the scene's first camera; without one, a camera that sees the whole bounding sphere
+///   (vertical
 ///                         field of view 45 degrees); a screen-space scene is mapped to the pixels it names
 ///   N                     camera number N of the scene, counted from 0
 ///   ex,ey,ez,tx,ty,tz,fovy  eye, target and vertical field of view in degrees; y is up; near and far enclose the scene

@@ -13,8 +13,8 @@
 namespace traces {
 
 struct Generator {
-    std::string                 id;
-    std::string                 summary; ///< one line
+    std::string id;
+    std::string summary; ///< one line
     std::vector<sim::FieldInfo> parameters;
     /// `values` overrides parameters by name; throws sim::InputError for unknown names and values out of range.
     std::function<Scene(const nlohmann::ordered_json& values)> build;

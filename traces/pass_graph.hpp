@@ -9,8 +9,8 @@
 namespace traces {
 
 /// Names of the surfaces that pipeline::Pass knows.
-inline constexpr const char* depth_surface   = "depth";
-inline constexpr const char* colour_surface  = "colour";
+inline constexpr const char* depth_surface = "depth";
+inline constexpr const char* colour_surface = "colour";
 inline constexpr const char* kbuffer_surface = "kbuffer";
 inline constexpr const char* picture_surface = "picture"; ///< what a resolve pass writes
 
@@ -33,14 +33,14 @@ class PassGraph {
     /// Something the method could have had and does not use here.
     void leave_out(std::string unit, std::string reason);
 
-    /// Takes out passes that draw nothing and passes (and writes of passes) that no later pass and no output reads, then
-    /// collects Needs and left_out from what remains.
+    /// Takes out passes that draw nothing and passes (and writes of passes) that no later pass and no output reads,
+    /// then collects Needs and left_out from what remains.
     pipeline::Frame lower() const;
 
   private:
-    pipeline::Frame                frame_;
-    std::vector<pipeline::Pass>    passes_;
-    std::vector<std::string>       outputs_;
+    pipeline::Frame frame_;
+    std::vector<pipeline::Pass> passes_;
+    std::vector<std::string> outputs_;
     std::vector<pipeline::LeftOut> left_out_;
 };
 

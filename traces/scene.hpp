@@ -14,13 +14,13 @@ namespace traces {
 /// A camera of the scene; it looks along -z of its own frame, y is up.
 struct Camera {
     std::string name;
-    glm::mat4   to_world{1.0F}; ///< without scale
-    bool        orthographic = false;
-    float       fovy         = 0.0F; ///< full vertical angle in radians, perspective only
-    float       aspect       = 0.0F; ///< width / height of the picture it was made for; 0 = any
-    float       xmag = 0.0F, ymag = 0.0F; ///< half the visible width and height, orthographic only
-    float       near = 0.0F;
-    float       far  = 0.0F; ///< 0 = infinite, perspective only
+    glm::mat4 to_world{1.0F}; ///< without scale
+    bool orthographic = false;
+    float fovy = 0.0F;              ///< full vertical angle in radians, perspective only
+    float aspect = 0.0F;            ///< width / height of the picture it was made for; 0 = any
+    float xmag = 0.0F, ymag = 0.0F; ///< half the visible width and height, orthographic only
+    float near = 0.0F;
+    float far = 0.0F; ///< 0 = infinite, perspective only
 };
 
 enum class LightKind : std::uint8_t { directional, point, spot };
@@ -28,13 +28,13 @@ enum class LightKind : std::uint8_t { directional, point, spot };
 /// A light of the scene (KHR_lights_punctual); it shines along -z of its own frame.
 struct Light {
     std::string name;
-    LightKind   kind = LightKind::point;
-    glm::mat4   to_world{1.0F};
-    glm::vec3   colour{1.0F};      ///< linear RGB
-    float       intensity  = 1.0F; ///< candela, or lux for directional lights
-    float       range      = 0.0F; ///< scene units; 0 = infinite
-    float       inner_cone = 0.0F; ///< radians, spot lights only
-    float       outer_cone = 0.785398F;
+    LightKind kind = LightKind::point;
+    glm::mat4 to_world{1.0F};
+    glm::vec3 colour{1.0F};  ///< linear RGB
+    float intensity = 1.0F;  ///< candela, or lux for directional lights
+    float range = 0.0F;      ///< scene units; 0 = infinite
+    float inner_cone = 0.0F; ///< radians, spot lights only
+    float outer_cone = 0.785398F;
 };
 
 struct Scene {
@@ -42,17 +42,18 @@ struct Scene {
     std::string hash; ///< XXH3-64 of everything the scene was read or generated from, 16 hexadecimal digits
 
     std::shared_ptr<pipeline::Resources> resources; ///< placed and validated
-    std::vector<pipeline::Draw>          draws;     ///< in the order of the file: by node, by primitive of its mesh
-    std::vector<Camera>                  cameras;
-    std::vector<Light>                   lights;
+    std::vector<pipeline::Draw> draws;              ///< in the order of the file: by node, by primitive of its mesh
+    std::vector<Camera> cameras;
+    std::vector<Light> lights;
 
     glm::vec3 lo{0.0F}, hi{0.0F}; ///< bounding box of the drawn positions in world space
 
-    std::uint64_t triangles       = 0; ///< of all primitives in the file, each counted once
+    std::uint64_t triangles = 0;       ///< of all primitives in the file, each counted once
     std::uint64_t triangles_drawn = 0; ///< of all instances of all draws
-    std::uint64_t vertices        = 0; ///< of the drawn geometries, each counted once
+    std::uint64_t vertices = 0;        ///< of the drawn geometries, each counted once
 
-    /// Positions are places on the screen: x to the right, y down from the top left corner, z the window depth in (0,1).
+    /// Positions are places on the screen: x to the right, y down from the top left corner, z the window depth in
+    /// (0,1).
     bool screen_space = false;
     /// Scene units across and down the viewport; 0 = one unit is one pixel. Only with screen_space.
     glm::vec2 screen_extent{0.0F};

@@ -22,8 +22,8 @@ struct WorkloadOptions {
 };
 
 struct Workload {
-    std::string                 id;
-    std::string                 summary; ///< one line
+    std::string id;
+    std::string summary; ///< one line
     std::vector<sim::FieldInfo> parameters;
     std::function<pipeline::Frame(const Scene&, const pipeline::View&, const WorkloadOptions&)> build;
 };

@@ -1,0 +1,221 @@
+#include "traces/pass_graph.hpp"
+
+#include "sim/check.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <set>
+#include <utility>
+
+namespace traces {
+
+using pipeline::AlphaMode;
+using pipeline::Frame;
+using pipeline::LeftOut;
+using pipeline::Needs;
+using pipeline::Pass;
+using pipeline::PassKind;
+using pipeline::Semantic;
+
+namespace {
+
+bool contains(const std::vector<std::string>& names, std::string_view name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+// Walks the passes from last to first and keeps what somebody behind still reads.
+class Culling {
+  public:
+    explicit Culling(const std::vector<std::string>& outputs) : live_(outputs.begin(), outputs.end()) {}
+
+    void visit(Pass pass) {
+        if (pass.kind == PassKind::draw && pass.draws.empty()) {
+            note(fmt::format("pass {}", pass.name), "it draws nothing");
+            return;
+        }
+        if (std::none_of(pass.writes.begin(), pass.writes.end(),
+                         [&](const auto& name) { return live_.contains(name); })) {
+            note(fmt::format("pass {}", pass.name), fmt::format("nobody reads {}", fmt::join(pass.writes, ", ")));
+            return;
+        }
+        drop_unread_writes(pass);
+        // Clears and resolves write every pixel, so what was there before is of no use; draws write some of them.
+        if (pass.kind != PassKind::draw)
+            for (const std::string& name : pass.writes) live_.erase(name);
+        live_.insert(pass.reads.begin(), pass.reads.end());
+        kept_.push_back(std::move(pass));
+    }
+
+    std::vector<Pass> kept() && { return reversed(std::move(kept_)); }
+    std::vector<LeftOut> left_out() && { return reversed(std::move(left_out_)); }
+
+  private:
+    void drop_unread_writes(Pass& pass) {
+        std::vector<std::string> writes;
+        for (const std::string& name : pass.writes) {
+            // A pass that reads what it writes itself needs it: a depth test without depth writes is another test.
+            if (live_.contains(name) || contains(pass.reads, name))
+                writes.push_back(name);
+            else if (pass.kind == PassKind::draw) // else the pass that would write it is reported
+                note(fmt::format("{} of pass {}", name, pass.name), "nobody reads it");
+        }
+        pass.writes = std::move(writes);
+    }
+
+    void note(std::string unit, std::string reason) { left_out_.push_back({std::move(unit), std::move(reason)}); }
+
+    template <class T>
+    static std::vector<T> reversed(std::vector<T> list) {
+        std::reverse(list.begin(), list.end());
+        return list;
+    }
+
+    std::set<std::string> live_;
+    std::vector<Pass> kept_;
+    std::vector<LeftOut> left_out_;
+};
+
+// What the draws of the remaining passes offer to be used.
+struct Offers {
+    bool indices = false;
+    bool alpha_test = false;
+    bool alpha_in_mask = false; ///< a tested alpha comes from vertex colours, too
+    bool textured_mask = false;
+    bool normals = false; ///< of lit materials
+    bool vertex_colours = false;
+    bool textures = false; ///< with coordinates to read them at
+};
+
+void add_draw_to(Offers& offers, const pipeline::Resources& resources, const pipeline::Draw& draw) {
+    const pipeline::Geometry& geometry = resources.geometries[draw.geometry];
+    const pipeline::Material& material = resources.materials[draw.material];
+    const auto* colour = geometry.find(Semantic::colour);
+    const bool textured = material.base_texture >= 0 &&
+                          geometry.find(material.texcoord == 0 ? Semantic::texcoord0 : Semantic::texcoord1) != nullptr;
+    const bool mask = material.alpha_mode == AlphaMode::mask;
+    offers.indices |= geometry.index_type != pipeline::IndexType::none;
+    offers.alpha_test |= mask;
+    offers.alpha_in_mask |= mask && colour != nullptr && colour->components == 4;
+    offers.textured_mask |= mask && textured;
+    offers.normals |= !material.unlit && geometry.find(Semantic::normal) != nullptr;
+    offers.vertex_colours |= colour != nullptr;
+    offers.textures |= textured;
+}
+
+Offers offers_of(const Frame& frame) {
+    Offers offers;
+    for (const Pass& pass : frame.passes)
+        for (const std::uint32_t draw : pass.draws) add_draw_to(offers, *frame.resources, frame.draws[draw]);
+    return offers;
+}
+
+Needs needs_of(const Frame& frame, const Offers& offers) {
+    Needs needs;
+    for (const Pass& pass : frame.passes) {
+        needs.colours |= pass.colour || (pass.kbuffer && frame.program->needs_colour());
+        needs.depth |= pass.depth.test || pass.depth.write;
+        needs.early_depth |= pass.depth.test;
+        needs.colour_surface |= contains(pass.writes, colour_surface) || contains(pass.reads, colour_surface);
+        needs.kbuffer |= pass.kbuffer;
+    }
+    needs.index_buffer = offers.indices;
+    needs.alpha_test = offers.alpha_test;
+    needs.normals = needs.colours && offers.normals;
+    needs.vertex_colours = (needs.colours && offers.vertex_colours) || offers.alpha_in_mask;
+    needs.textures = (needs.colours && offers.textures) || offers.textured_mask;
+    needs.texcoords = needs.textures;
+    return needs;
+}
+
+void list_left_out(std::vector<LeftOut>& list, const Needs& needs, const Offers& offers) {
+    const auto add = [&](bool needed, const char* unit, const char* reason) {
+        if (!needed) list.push_back({unit, reason});
+    };
+    // An attribute is missing from the scene, or it is there and nobody reads it.
+    const auto unless_offered = [](bool offered, const char* missing, const char* unread) {
+        return offered ? unread : missing;
+    };
+    constexpr const char* no_colours = "no pass reads colours";
+    constexpr const char* no_reader = "no pass reads colours and no alpha test reads it";
+    constexpr const char* no_texture = "no drawn material has a texture and coordinates for it";
+    add(needs.index_buffer, "index buffer", "no drawn geometry has indices");
+    add(needs.normals, "normals",
+        unless_offered(offers.normals, "no drawn geometry with a lit material has them", no_colours));
+    add(needs.vertex_colours, "vertex colours",
+        unless_offered(offers.vertex_colours, "no drawn geometry has them", no_reader));
+    add(needs.texcoords, "texture coordinates", unless_offered(offers.textures, no_texture, no_reader));
+    add(needs.textures, "textures", unless_offered(offers.textures, no_texture, no_reader));
+    add(needs.alpha_test, "alpha test", "no drawn material tests alpha");
+    add(needs.colours, "colours", no_colours);
+    add(needs.depth, "depth surface", "no pass tests or writes depth");
+    add(needs.early_depth, "early depth test", "no pass tests depth");
+    add(needs.colour_surface, "colour surface", "no pass writes it");
+    add(needs.kbuffer, "k-buffer", "no pass runs a modify program");
+}
+
+} // namespace
+
+PassGraph::PassGraph(Frame frame) : frame_(std::move(frame)) {
+    CHECK(frame_.resources != nullptr);
+    frame_.passes.clear();
+}
+
+void PassGraph::add_clear(std::string name, std::vector<std::string> writes) {
+    Pass pass;
+    pass.name = std::move(name);
+    pass.kind = PassKind::clear;
+    pass.writes = std::move(writes);
+    passes_.push_back(std::move(pass));
+}
+
+void PassGraph::add_draw(std::string name, std::vector<std::string> reads, std::vector<std::string> writes,
+                         std::vector<std::uint32_t> draws) {
+    for (const std::uint32_t draw : draws) CHECK(draw < frame_.draws.size());
+    CHECK(!contains(writes, kbuffer_surface) || frame_.program != nullptr);
+    Pass pass;
+    pass.name = std::move(name);
+    pass.reads = std::move(reads);
+    pass.writes = std::move(writes);
+    pass.draws = std::move(draws);
+    if (contains(pass.writes, kbuffer_surface) && !contains(pass.reads, kbuffer_surface))
+        pass.reads.emplace_back(kbuffer_surface);
+    passes_.push_back(std::move(pass));
+}
+
+void PassGraph::add_resolve(std::string name, std::vector<std::string> reads, std::vector<std::string> writes) {
+    Pass pass;
+    pass.name = std::move(name);
+    pass.kind = PassKind::resolve;
+    pass.reads = std::move(reads);
+    pass.writes = std::move(writes);
+    passes_.push_back(std::move(pass));
+}
+
+void PassGraph::output(std::string surface) { outputs_.push_back(std::move(surface)); }
+
+void PassGraph::leave_out(std::string unit, std::string reason) {
+    left_out_.push_back({std::move(unit), std::move(reason)});
+}
+
+Frame PassGraph::lower() const {
+    Culling culling(outputs_);
+    for (auto pass = passes_.rbegin(); pass != passes_.rend(); ++pass) culling.visit(*pass);
+    Frame frame = frame_;
+    frame.passes = std::move(culling).kept();
+    for (Pass& pass : frame.passes) {
+        if (pass.kind != PassKind::draw) continue;
+        pass.depth = {contains(pass.reads, depth_surface), contains(pass.writes, depth_surface)};
+        pass.colour = contains(pass.writes, colour_surface);
+        pass.kbuffer = contains(pass.writes, kbuffer_surface);
+    }
+    const Offers offers = offers_of(frame);
+    frame.needs = needs_of(frame, offers);
+    if (!frame.needs.kbuffer) frame.program = nullptr;
+    frame.left_out = left_out_;
+    for (LeftOut& item : std::move(culling).left_out()) frame.left_out.push_back(std::move(item));
+    list_left_out(frame.left_out, frame.needs, offers);
+    return frame;
+}
+
+} // namespace traces

@@ -1,0 +1,40 @@
+// Every draw with depth test and depth write, in one pass: the plain workload, with no k-buffer.
+#include "pipeline/output/kbuffer_design.hpp" // names of the depth formats
+#include "traces/pass_graph.hpp"
+#include "traces/workloads/methods.hpp"
+
+#include <numeric>
+
+namespace traces {
+
+namespace {
+
+struct OpaqueParams {
+    pipeline::DepthFormat depth_format = pipeline::DepthFormat::d24;
+
+    static constexpr auto fields() {
+        return std::tuple(sim::field<&OpaqueParams::depth_format>("format of the depth surface"));
+    }
+};
+static_assert(sim::fully_described<OpaqueParams>);
+
+pipeline::Frame build(const Scene& scene, const pipeline::View& view, const OpaqueParams& params) {
+    pipeline::Frame frame = frame_of(scene, view);
+    frame.depth_format = params.depth_format;
+    std::vector<std::uint32_t> all(frame.draws.size());
+    std::iota(all.begin(), all.end(), 0U);
+
+    PassGraph graph(std::move(frame));
+    graph.add_clear("clear", {depth_surface, colour_surface});
+    graph.add_draw("opaque", {depth_surface}, {depth_surface, colour_surface}, std::move(all));
+    graph.output(colour_surface);
+    return graph.lower();
+}
+
+} // namespace
+
+Workload opaque_workload() {
+    return make_workload<OpaqueParams>("opaque", "every draw with depth test and depth write; no k-buffer", build);
+}
+
+} // namespace traces

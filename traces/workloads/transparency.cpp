@@ -1,0 +1,107 @@
+// Order-independent transparency: the k nearest fragments of each pixel, composited front to back.
+//
+// Source: Bavoil 2007, sections 4.4 and 6.1.1 (specification 004: workload W2, programs A6 and A11). Whether one pass
+// with a k-buffer does it or k passes of depth peeling (W3) is the design's choice, so the graph is the same for both.
+#include "models/programs/library.hpp"
+#include "models/programs/nearest_k.hpp"
+#include "pipeline/output/kbuffer_design.hpp" // names of the depth formats
+#include "traces/pass_graph.hpp"
+#include "traces/workloads/methods.hpp"
+
+#include <array>
+
+namespace traces {
+
+enum class TransparentDraws : std::uint8_t { all, materials };
+
+} // namespace traces
+
+template <>
+struct sim::EnumNames<traces::TransparentDraws> {
+    static constexpr std::array<std::string_view, 2> names{"all", "materials"};
+};
+
+namespace traces {
+
+namespace {
+
+struct TransparencyParams {
+    std::uint32_t k = 4;
+    models::EntryKind entry = models::EntryKind::rgbz;
+    TransparentDraws transparent = TransparentDraws::all;
+    float opacity = 0.5F;
+    std::array<float, 3> background = {1.0F, 1.0F, 1.0F};
+    pipeline::DepthFormat depth_format = pipeline::DepthFormat::d24;
+
+    static constexpr auto fields() {
+        using P = TransparencyParams;
+        return std::tuple(
+            sim::field<&P::k>("layers kept per pixel").unit("layers").range(1, 64),
+            sim::field<&P::entry>("what a layer keeps: colour and depth, or depth"),
+            sim::field<&P::transparent>("which draws are transparent: all, or those whose material is (the others are "
+                                        "drawn first, with a depth buffer)"),
+            sim::field<&P::opacity>("opacity of every layer").range(0.0F, 1.0F),
+            sim::field<&P::background>("linear RGB behind everything").range(0.0F, 1.0F),
+            sim::field<&P::depth_format>("format of the depth surface, where there is one"));
+    }
+};
+static_assert(sim::fully_described<TransparencyParams>);
+
+struct Split {
+    std::vector<std::uint32_t> opaque, transparent;
+};
+
+Split split(const pipeline::Frame& frame, TransparentDraws which) {
+    Split result;
+    for (std::uint32_t i = 0; i < frame.draws.size(); ++i) {
+        const bool transparent =
+            which == TransparentDraws::all || frame.resources->materials[frame.draws[i].material].transparent();
+        (transparent ? result.transparent : result.opaque).push_back(i);
+    }
+    return result;
+}
+
+pipeline::Frame build(const Scene& scene, const pipeline::View& view, const TransparencyParams& params) {
+    pipeline::Frame frame = frame_of(scene, view);
+    frame.program = models::make_program("nearest-k", sim::enum_name(params.entry), params.k);
+    frame.opacity = params.opacity;
+    frame.background = {params.background[0], params.background[1], params.background[2], 1.0F};
+    frame.depth_format = params.depth_format;
+    Split draws = split(frame, params.transparent);
+
+    const bool with_opaque = !draws.opaque.empty();
+    const bool with_transparent = !draws.transparent.empty();
+    const bool colours = frame.program->needs_colour();
+    PassGraph graph(std::move(frame));
+    if (with_opaque) {
+        graph.add_clear("clear", {depth_surface, colour_surface});
+        graph.add_draw("opaque", {depth_surface}, {depth_surface, colour_surface}, std::move(draws.opaque));
+    } else {
+        graph.leave_out("pass opaque", params.transparent == TransparentDraws::all
+                                           ? "every draw is transparent by choice"
+                                           : "every draw has a transparent material");
+    }
+    std::vector<std::string> resolved;
+    if (with_transparent) {
+        graph.add_clear("clear k-buffer", {kbuffer_surface});
+        graph.add_draw("geometry", with_opaque ? std::vector<std::string>{depth_surface} : std::vector<std::string>{},
+                       {kbuffer_surface}, std::move(draws.transparent));
+        resolved.emplace_back(kbuffer_surface);
+    } else {
+        graph.leave_out("pass geometry", "no draw has a transparent material");
+    }
+    // Layers of depths alone are not laid over a colour, so the opaque pass then serves for its depth only.
+    if (with_opaque && (colours || !with_transparent)) resolved.emplace_back(colour_surface);
+    graph.add_resolve("resolve", std::move(resolved), {picture_surface});
+    graph.output(picture_surface);
+    return graph.lower();
+}
+
+} // namespace
+
+Workload transparency_workload() {
+    return make_workload<TransparencyParams>(
+        "transparency", "the k nearest fragments of each pixel, composited front to back with one opacity", build);
+}
+
+} // namespace traces

@@ -57,16 +57,17 @@ class CommandProcessor final : public sim::Component {
   private:
     sim::Activity tick() override;
     bool          begins_call() const; ///< range next_ is the first instance of its draw call
-    void          take();
+    bool          take();              ///< false: not submitted yet
 
     Params              params_;
     const GeometryPass* pass_;
     Stats               stats_;
     bool                starting_  = false;
-    sim::Cycle          start_     = 0; ///< first edge of the pass
-    std::uint32_t       next_      = 0; ///< range to be sent next
-    std::uint32_t       calls_     = 0; ///< draw calls begun in this pass
+    sim::Time           start_     = 0;     ///< first edge of the pass
+    std::uint32_t       next_      = 0;     ///< range to be sent next
+    std::uint32_t       calls_     = 0;     ///< draw calls begun in this pass
     bool                taken_     = false; ///< range next_ is being set up
+    sim::Cycle          free_      = 0;     ///< edge at which the range before it left
     sim::Cycle          set_up_at_ = 0;
 };
 

@@ -7,6 +7,7 @@
 // Source: specification 004, sections 2.1, 5 (index_fetch_GBps), 9.1.
 #pragma once
 
+#include "pipeline/functional/vertex_fetch.hpp"
 #include "pipeline/geometry/geometry_pass.hpp"
 #include "pipeline/geometry/messages.hpp"
 #include "pipeline/memory/messages.hpp"
@@ -66,44 +67,57 @@ class IndexFetch final : public sim::Component {
     const std::vector<std::uint64_t>& draw_bytes() const { return draw_bytes_; }
 
   private:
-    /// A draw between its first request and its last primitive. Lines are counted over the whole run.
+    /// A draw between its first request and its last primitive. Lines are numbered over the whole run.
     struct Work {
-        std::uint32_t range = 0;
-        Topology      topology = Topology::triangles;
-        std::uint32_t index_bytes = 0; ///< 0: not indexed
-        IndexReader   reader;
-        std::uint64_t first_byte = 0; ///< of the indices, counted from the start of the first line
-        std::uint64_t first_line = 0; ///< running number of the first line
-        std::uint64_t end_line   = 0;
-        std::uint64_t address    = 0; ///< of the first line
-        std::uint32_t next       = 0; ///< primitive to be sent next
-        std::uint32_t primitives = 0;
+        PrimitiveReader reader;
+        Topology        topology        = Topology::triangles;
+        std::uint32_t   first_primitive = 0;
+        std::uint32_t   range           = 0;
+        std::uint32_t   index_bytes     = 0; ///< 0: not indexed
+        std::uint32_t   primitives      = 0;
+        std::uint32_t   next            = 0; ///< primitive to be sent next
+        std::uint64_t   address         = 0; ///< of the first line
+        std::uint32_t   skip            = 0; ///< bytes of the first line before the first index
+        std::uint64_t   first_line = 0, end_line = 0;
+
+        /// How many indices primitive `next` reads that the one before it did not.
+        std::uint32_t new_indices() const { return topology == Topology::triangles || next == 0 ? 3 : 1; }
+        /// Indices up to the last one that a primitive reads.
+        std::uint32_t indices_needed(std::uint32_t primitive) const {
+            return topology == Topology::triangles ? 3 * primitive + 3 : primitive + 3;
+        }
+        /// The first index of the list that the primitives behind this one read; the centre of a fan is kept.
+        std::uint32_t first_index_after(std::uint32_t primitive) const {
+            if (topology == Topology::triangles) return 3 * primitive + 3;
+            return topology == Topology::triangle_strip ? primitive + 1 : primitive + 2;
+        }
     };
 
     sim::Activity tick() override;
-    bool          take_draw();
+    Work          work_of(std::uint32_t range);
     bool          take_lines();
+    bool          take_draw();
     bool          request_lines();
-    bool          send_primitives();
-    bool          send(Work& work);
+    /// What keeps the next primitive from leaving; busy when nothing does.
+    sim::Activity send_primitive();
     bool          spend(std::uint32_t bytes);
-    std::uint32_t new_indices(const Work& work) const;
-    bool          arrived(const Work& work, std::uint32_t end_place) const;
-    void          retire(const Work& work, std::uint32_t first_place);
+    void          finish_draw();
+    std::uint64_t line_of(const Work& work, std::uint32_t index) const;
 
-    static constexpr std::size_t draws_ahead = 4; ///< draws whose lines may be requested while an earlier one is sent
-
-    Params               params_;
-    const GeometryPass*  pass_;
-    Stats                stats_;
+    Params                     params_;
+    const GeometryPass*        pass_;
+    Stats                      stats_;
     std::vector<std::uint64_t> draw_bytes_;
-    std::deque<Work>     work_;             ///< at most draws_ahead
-    std::size_t          requesting_ = 0;   ///< of `work_`: whose lines are being requested
-    std::vector<bool>    here_;             ///< ring over running line numbers: the line has arrived
-    std::uint64_t        lines_ = 0;        ///< running number of the next line of a new draw
-    std::uint64_t        requested_ = 0, arrived_ = 0, retired_ = 0; ///< running line numbers, in order
-    double               credit_ = 0;       ///< index bytes that may be read out now
-    sim::Cycle           credited_ = 0;     ///< edge up to which credit was given
+    std::deque<Work>           work_;
+    std::size_t                requesting_ = 0;     ///< of `work_`: whose lines are being requested
+    std::vector<bool>          here_;               ///< ring over line numbers: the line has arrived
+    std::uint64_t              lines_     = 0;      ///< number of the first line of the next draw
+    std::uint64_t              requested_ = 0;      ///< lines below are requested,
+    std::uint64_t              arrived_   = 0;      ///< ... have all arrived,
+    std::uint64_t              used_up_   = 0;      ///< ... are not needed any more
+    std::uint64_t              rate_;               ///< index bytes per cycle, in parts of a byte
+    std::uint64_t              credit_    = 0;      ///< parts of bytes that may be read out now
+    sim::Cycle                 credited_  = 0;      ///< edge up to which credit was given
 };
 
 /// Primitives of draws without index buffers: consecutive vertices, from no memory.

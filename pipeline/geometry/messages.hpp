@@ -1,8 +1,8 @@
 // What travels between the stages of the geometry front.
 //
-// A `range` is an index into FragmentStream::draws: one instance of one draw. Primitives and triangles are numbered as in
-// the stream. Vertices are known by their sequence number: the running count of vertex shader runs since the start of
-// the pass, beginning with 1.
+// A `range` is one instance of one draw: an index into the ranges of the pass (geometry_pass.hpp). Primitives and triangles
+// are numbered as in the stream. A shaded vertex is known by its sequence number: the running count of vertex shader
+// runs, beginning with 1.
 #pragma once
 
 #include <array>

@@ -8,6 +8,7 @@
 // Eldridge, Proudfoot, "Prefetching in a Texture Cache Architecture", 1998.
 #pragma once
 
+#include "pipeline/fixed_queue.hpp"
 #include "pipeline/frame.hpp"
 #include "pipeline/geometry/geometry_pass.hpp"
 #include "pipeline/geometry/messages.hpp"
@@ -31,7 +32,7 @@ struct VertexFetchParams {
             sim::field<&P::lines_per_clk>("Lines looked up").unit("lines/cycle").range(1, 64),
             sim::field<&P::lines_in_flight>("Lines requested and not arrived").unit("lines").range(1, 65536),
             sim::field<&P::vertices_in_flight>("Vertices looked up and not delivered").unit("vertices").range(1, 65536),
-            sim::field<&P::hit_latency>("From lookup to delivery when all lines are held").unit("cycles").range(1, 1000)};
+            sim::field<&P::hit_latency>("From the tags to the shader when all lines are held").unit("cycles").range(1, 1000)};
     }
 };
 static_assert(sim::fully_described<VertexFetchParams>);
@@ -81,11 +82,10 @@ class VertexFetch final : public sim::Component {
         std::uint32_t stride  = 0;
         std::uint32_t bytes   = 0;
     };
-    /// A vertex that has been looked up: complete when fill `last_fill` has arrived.
+    /// A vertex that has been looked up: complete when fill `last_fill` and all before it have arrived.
     struct Waiting {
         std::uint32_t sequence  = 0;
         std::uint64_t last_fill = 0;
-        sim::Cycle    ready     = 0; ///< not earlier than this edge
     };
 
     sim::Activity tick() override;
@@ -95,8 +95,8 @@ class VertexFetch final : public sim::Component {
     bool          look_up_line(std::uint64_t line);
     void          begin_range(std::uint32_t range);
     void          begin_vertex(const VertexRequest& request);
-    bool          next_line(std::uint64_t& line);
-    sim::Activity wait();
+    bool          next_line();
+    bool          deliverable() { return !waiting_.empty() && waiting_.front().last_fill <= filled_; }
 
     Params                     params_;
     const GeometryPass*        pass_;
@@ -114,15 +114,13 @@ class VertexFetch final : public sim::Component {
     std::uint64_t              fills_ = 0;   ///< fills requested; they are numbered from 1
     std::uint64_t              filled_ = 0;  ///< this fill and all before it have arrived
 
-    std::vector<Waiting>       waiting_;     ///< ring
-    std::uint64_t              first_ = 0, end_ = 0;
-
+    FixedQueue<Waiting>        waiting_;
     bool                       holding_ = false; ///< present_ is being looked up
     Waiting                    present_;
-    std::uint32_t              vertex_ = 0;      ///< its number
-    std::size_t                stream_ = 0;      ///< where its lookup stands
-    std::uint64_t              line_   = 0, end_line_ = 0; ///< lines of this stream still to be looked up
-    std::uint64_t              last_line_ = ~std::uint64_t{0};
+    std::uint32_t              vertex_    = 0; ///< its number
+    std::size_t                stream_    = 0; ///< first stream whose lines are not listed yet
+    std::uint64_t              line_      = 0; ///< next line to look up
+    std::uint64_t              end_line_  = 0; ///< one past the last line of the stream before stream_
 };
 
 } // namespace pipeline

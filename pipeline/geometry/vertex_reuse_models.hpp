@@ -32,10 +32,10 @@ struct sim::EnumNames<pipeline::ReuseModel> {
 namespace pipeline {
 
 struct VertexReuseParams {
-    ReuseModel    model           = ReuseModel::fifo;
-    std::uint32_t entries         = 24;
-    std::uint32_t warp_vertices   = 32;
-    std::uint32_t group_triangles = 0;
+    ReuseModel    model            = ReuseModel::fifo;
+    std::uint32_t entries          = 24;
+    std::uint32_t warp_vertices    = 32;
+    std::uint32_t group_triangles  = 0;
     std::uint32_t vertices_per_clk = 2;
 
     static constexpr auto fields() {
@@ -84,26 +84,28 @@ class FifoReuse {
     std::vector<std::uint32_t> run_of_;            ///< by vertex: its latest run, 0 = none
 };
 
-/// Mesa's vertex batches.
+/// Mesa's vertex batches. Without an index buffer each vertex is shaded once.
 class MesaReuse {
   public:
     static constexpr std::uint32_t run_indices   = 1023;
     static constexpr std::uint32_t table_entries = 256;
 
-    void          begin_draw(bool indexed);
+    void          begin_draw(std::uint32_t vertex_count, bool indexed);
     ReuseResult   triangle(const std::array<std::uint32_t, 3>& vertices);
     std::uint32_t runs() const { return next_ - 1; }
 
   private:
     struct Entry {
         std::uint32_t vertex = 0;
-        std::uint32_t run    = 0;
+        std::uint32_t run    = 0; ///< 0: none
     };
-    std::uint32_t                    next_    = 1;
-    std::uint32_t                    flushed_ = 1;
-    std::uint32_t                    indices_ = 0; ///< of the present run
-    bool                             indexed_ = true;
-    std::array<Entry, table_entries> table_{};
+    Entry& entry_of(std::uint32_t vertex) { return table_[vertex % table_.size()]; }
+
+    std::uint32_t      next_    = 1;
+    std::uint32_t      flushed_ = 1; ///< runs before this one are forgotten
+    std::uint32_t      indices_ = 0; ///< of the present batch
+    bool               indexed_ = true;
+    std::vector<Entry> table_   = std::vector<Entry>(table_entries);
 };
 
 /// The configured one of them.

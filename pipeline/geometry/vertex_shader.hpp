@@ -5,6 +5,7 @@
 // Source: specification 004, sections 7 (vs_units, vs_cycles_per_vertex), 9.2.
 #pragma once
 
+#include "pipeline/fixed_queue.hpp"
 #include "pipeline/geometry/messages.hpp"
 #include "sim/channel.hpp"
 #include "sim/described.hpp"
@@ -58,10 +59,9 @@ class VertexShader final : public sim::Component {
     };
     sim::Activity tick() override;
 
-    Params           params_;
-    Stats            stats_;
-    std::vector<Run> runs_; ///< ring, one entry per unit, oldest first
-    std::uint32_t    first_ = 0, busy_ = 0;
+    Params          params_;
+    Stats           stats_;
+    FixedQueue<Run> runs_; ///< one entry per unit at work, oldest first
 };
 
 } // namespace pipeline

@@ -65,6 +65,12 @@ class Cache {
     CacheAccess access(std::uint64_t line, bool write = false);
     /// The slot that holds `line`, or no_slot; changes nothing.
     std::uint32_t find(std::uint64_t line) const;
+    /// An access to the line that `slot` holds: a hit.
+    void touch(std::uint32_t slot, bool write = false) {
+        lines_[slot].used = ++accesses_;
+        lines_[slot].dirty |= write;
+        ++stats_.hits;
+    }
     /// Drops `line`; true when it was held and dirty. Counts nothing.
     bool invalidate(std::uint64_t line);
     /// Drops every line. Counts nothing.

@@ -35,8 +35,8 @@ static_assert(sim::fully_described<DramParams>);
 class DramChannel {
   public:
     /// Femtoseconds: bandwidths like 12.8 GB/s are whole numbers of them per byte.
-    using Fine                                 = std::uint64_t;
-    static constexpr Fine fine_per_time        = 1000;
+    using Fine                          = std::uint64_t;
+    static constexpr Fine fine_per_time = 1000;
 
     /// `bandwidth` in GB/s of this channel, above 0; `cycle` is the period of the clock that DramParams counts in.
     DramChannel(const DramParams& params, double bandwidth, sim::Time cycle);

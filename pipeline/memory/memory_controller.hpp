@@ -5,6 +5,7 @@
 // Not modelled: reordering, read/write turnaround, compression.
 #pragma once
 
+#include "pipeline/fixed_queue.hpp"
 #include "pipeline/memory/dram_channel.hpp"
 #include "pipeline/memory/messages.hpp"
 #include "sim/channel.hpp"
@@ -80,29 +81,25 @@ class MemoryController final : public sim::Component {
     sim::Cycle unloaded_latency(std::uint32_t bytes) const;
 
   private:
-    /// Answers on their way, in order; a ring that is as large as the queue and the latency can fill.
-    class Answers {
-      public:
-        explicit Answers(std::size_t capacity);
-        bool                           empty() const { return head_ == tail_; }
-        bool                           full() const { return tail_ - head_ > mask_; }
-        void                           push(std::uint32_t tag, sim::Cycle ready);
-        const std::pair<std::uint32_t, sim::Cycle>& front() const { return ring_[head_ & mask_]; }
-        void                                        pop() { ++head_; }
-
-      private:
-        std::uint64_t                                     mask_;
-        std::uint64_t                                     head_ = 0, tail_ = 0;
-        sim::Cycle                                        last_ = 0;
-        std::vector<std::pair<std::uint32_t, sim::Cycle>> ring_;
+    struct Answer {
+        std::uint32_t tag   = 0;
+        sim::Cycle    ready = 0;
     };
+    /// One requester: answers leave in the order in which the requests came.
+    struct Port {
+        sim::In<MemoryRequest>*   requests;
+        sim::Out<MemoryResponse>* responses;
+        FixedQueue<Answer>        answers; ///< as large as the queue and the latency can fill
+    };
+    static constexpr std::size_t hub = 0, rop = 1;
 
     sim::Activity tick() override;
-    bool          answer(Answers& answers, sim::Out<MemoryResponse>& out);
+    bool          answer(Port& port);
     void          forget_transferred();
     bool          accept();
-    void          serve(const MemoryRequest& request, Answers& answers);
+    void          serve(const MemoryRequest& request, Port& port);
     void          book(const MemoryRequest& request);
+    std::uint64_t local_address(std::uint64_t address, const Port& port) const;
     sim::Activity wait();
 
     Params                   params_;
@@ -110,10 +107,9 @@ class MemoryController final : public sim::Component {
     Share                    share_;
     DramChannel              channel_;
     sim::Random              random_;
-    Answers                  hub_answers_, rop_answers_;
-    std::vector<sim::Cycle>  queue_; ///< ring of the edges at which the queued requests are transferred
-    std::uint64_t            queue_head_ = 0, queue_tail_ = 0;
-    bool                     rop_first_ = false;
+    std::array<Port, 2>      ports_;
+    std::size_t              turn_ = hub;  ///< port that goes first
+    FixedQueue<sim::Cycle>   queue_;       ///< edges at which the waiting requests have crossed the bus
     std::vector<MemoryBytes> draw_bytes_;
 };
 

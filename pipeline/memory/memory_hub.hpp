@@ -25,7 +25,7 @@ struct MemoryHubParams {
                 .unit("cycles")
                 .range(1, 10000),
             sim::field<&MemoryHubParams::requests_per_clk>("Requests that one client may send in a cycle").range(1, 64),
-            sim::field<&MemoryHubParams::reads_in_flight>("Reads on their way, of all clients").range(1, 1U << 20U)};
+            sim::field<&MemoryHubParams::reads_in_flight>("Reads on their way, of all clients").range(64, 1U << 20U)};
     }
 };
 static_assert(sim::fully_described<MemoryHubParams>);
@@ -53,12 +53,12 @@ class MemoryHub final : public sim::Component {
     MemoryHub(sim::Context context, const Params& params, std::uint32_t partitions, std::uint32_t interleave);
 
     struct ClientPort {
-        ClientPort(sim::Component& owner) : requests_in(owner, "requests_in"), responses_out(owner, "responses_out") {}
+        explicit ClientPort(sim::Component& owner) : requests_in(owner, "requests_in"), responses_out(owner, "responses_out") {}
         sim::In<MemoryRequest>   requests_in;
         sim::Out<MemoryResponse> responses_out;
     };
     struct PartitionPort {
-        PartitionPort(sim::Component& owner) : requests_out(owner, "requests_out"), responses_in(owner, "responses_in") {}
+        explicit PartitionPort(sim::Component& owner) : requests_out(owner, "requests_out"), responses_in(owner, "responses_in") {}
         sim::Out<MemoryRequest>  requests_out;
         sim::In<MemoryResponse>  responses_in;
     };

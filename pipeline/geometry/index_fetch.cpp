@@ -1,0 +1,171 @@
+#include "pipeline/geometry/index_fetch.hpp"
+
+#include <algorithm>
+#include <bit>
+
+namespace pipeline {
+
+namespace {
+
+constexpr std::uint64_t parts_of_a_byte = 1024;
+constexpr std::size_t   draws_ahead     = 4; ///< draws whose lines may be requested while an earlier one is sent
+constexpr std::uint32_t largest_read    = 3 * bytes_of(IndexType::u32);
+
+void book(std::vector<std::uint64_t>& by_draw, std::uint32_t draw, std::uint64_t amount) {
+    if (draw >= by_draw.size()) by_draw.resize(draw + 1);
+    by_draw[draw] += amount;
+}
+
+} // namespace
+
+IndexFetch::IndexFetch(sim::Context context, const Params& params, const GeometryPass& pass)
+    : Component(std::move(context)), params_(params), pass_(&pass), here_(std::bit_ceil(params.lines_in_flight)),
+      rate_(static_cast<std::uint64_t>(params.bytes_per_clk * parts_of_a_byte + 0.5)) {
+    if (!std::has_single_bit(params.line)) throw sim::InputError("index_fetch.line: expected a power of two");
+}
+
+IndexFetch::Work IndexFetch::work_of(std::uint32_t range_number) {
+    const DrawRange& range    = pass_->range(range_number);
+    const Geometry&  geometry = pass_->geometry(range_number);
+    CHECK(range.primitives <= geometry.triangle_count());
+    Work work{.reader          = PrimitiveReader(*pass_->resources, geometry),
+              .topology        = geometry.topology,
+              .first_primitive = range.first_primitive,
+              .range           = range_number,
+              .index_bytes     = bytes_of(geometry.index_type),
+              .primitives      = range.primitives,
+              .first_line      = lines_,
+              .end_line        = lines_};
+    if (work.index_bytes == 0 || work.primitives == 0) return work;
+    const std::uint64_t first = pass_->resources->buffers[geometry.index_buffer].address + geometry.index_offset;
+    const std::uint64_t bytes = std::uint64_t{work.index_bytes} * work.indices_needed(work.primitives - 1);
+    work.address              = first / params_.line * params_.line;
+    work.skip                 = static_cast<std::uint32_t>(first % params_.line);
+    work.end_line += (work.skip + bytes + params_.line - 1) / params_.line;
+    return work;
+}
+
+bool IndexFetch::take_draw() {
+    const DrawCommand* command = draws_in.peek();
+    if (command == nullptr || work_.size() >= draws_ahead) return false;
+    work_.push_back(work_of(command->range));
+    lines_ = work_.back().end_line;
+    draws_in.pop();
+    ++stats_.draws;
+    return true;
+}
+
+bool IndexFetch::take_lines() {
+    bool progress = false;
+    while (const MemoryResponse* response = responses_in.peek()) {
+        here_[response->tag & (here_.size() - 1)] = true;
+        responses_in.pop();
+        progress = true;
+    }
+    while (arrived_ < requested_ && here_[arrived_ & (here_.size() - 1)]) {
+        here_[arrived_ & (here_.size() - 1)] = false;
+        ++arrived_;
+    }
+    return progress;
+}
+
+bool IndexFetch::request_lines() {
+    bool progress = false;
+    while (requested_ < lines_ && requested_ - used_up_ < params_.lines_in_flight && requests_out.ready()) {
+        while (work_[requesting_].end_line <= requested_) ++requesting_;
+        const Work&         work = work_[requesting_];
+        const std::uint32_t draw = pass_->range(work.range).draw;
+        requests_out.send({.address = work.address + (requested_ - work.first_line) * params_.line,
+                           .bytes   = params_.line,
+                           .tag     = static_cast<std::uint32_t>(requested_),
+                           .draw    = draw,
+                           .client  = MemoryClient::index,
+                           .write   = false});
+        ++requested_;
+        ++stats_.lines;
+        stats_.bytes += params_.line;
+        book(draw_bytes_, draw, params_.line);
+        progress = true;
+    }
+    return progress;
+}
+
+// Number of the line in which an index begins.
+std::uint64_t IndexFetch::line_of(const Work& work, std::uint32_t index) const {
+    return work.first_line + (work.skip + std::uint64_t{index} * work.index_bytes) / params_.line;
+}
+
+bool IndexFetch::spend(std::uint32_t bytes) {
+    const std::uint64_t cost = bytes * parts_of_a_byte;
+    credit_   = std::min(rate_ + largest_read * parts_of_a_byte, credit_ + (cycle() - credited_) * rate_);
+    credited_ = cycle();
+    if (credit_ < cost) {
+        wake_in((cost - credit_ + rate_ - 1) / rate_);
+        return false;
+    }
+    credit_ -= cost;
+    return true;
+}
+
+void IndexFetch::finish_draw() {
+    used_up_ = work_.front().end_line;
+    if (requesting_ > 0) --requesting_;
+    work_.pop_front();
+}
+
+sim::Activity IndexFetch::send_primitive() {
+    Work& work = work_.front();
+    if (work.index_bytes != 0) {
+        const std::uint64_t last_byte = work.skip + std::uint64_t{work.indices_needed(work.next)} * work.index_bytes - 1;
+        if (work.first_line + last_byte / params_.line >= arrived_) return sim::Activity::memory;
+    }
+    if (!primitives_out.ready()) return sim::Activity::blocked;
+    if (work.index_bytes != 0) {
+        const std::uint32_t indices = work.new_indices();
+        if (!spend(indices * work.index_bytes)) return sim::Activity::memory;
+        stats_.indices += indices;
+        used_up_ = line_of(work, work.first_index_after(work.next));
+    }
+    primitives_out.send({work.first_primitive + work.next, work.range, work.reader(work.next)});
+    ++work.next;
+    ++stats_.primitives;
+    return sim::Activity::busy;
+}
+
+sim::Activity IndexFetch::tick() {
+    bool progress = take_lines();
+    progress |= take_draw();
+    progress |= request_lines();
+    sim::Activity activity = sim::Activity::starved;
+    while (!work_.empty()) {
+        if (work_.front().next == work_.front().primitives)
+            finish_draw();
+        else if ((activity = send_primitive()) != sim::Activity::busy)
+            break;
+        progress = true;
+    }
+    if (progress) return sim::Activity::busy;
+    return work_.empty() ? sim::Activity::starved : activity;
+}
+
+sim::Activity PrimitiveCounter::tick() {
+    bool progress = false;
+    while (const DrawCommand* command = draws_in.peek()) {
+        const DrawRange& range = pass_->range(command->range);
+        if (next_ == range.primitives) {
+            draws_in.pop();
+            ++stats_.draws;
+            next_ = 0;
+        } else {
+            if (!primitives_out.ready()) return progress ? sim::Activity::busy : sim::Activity::blocked;
+            const PrimitiveReader reader(*pass_->resources, pass_->geometry(command->range));
+            primitives_out.send({range.first_primitive + next_, command->range, reader(next_)});
+            ++stats_.primitives;
+            ++next_;
+        }
+        progress = true;
+    }
+    return progress ? sim::Activity::busy : sim::Activity::starved;
+}
+
+} // namespace pipeline

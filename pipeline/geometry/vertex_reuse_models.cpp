@@ -1,0 +1,97 @@
+#include "pipeline/geometry/vertex_reuse_models.hpp"
+
+#include "sim/check.hpp"
+
+namespace pipeline {
+
+FifoReuse::FifoReuse(std::uint32_t entries, std::uint32_t warp_vertices, std::uint32_t group_triangles)
+    : entries_(entries), warp_vertices_(warp_vertices), group_triangles_(group_triangles) {
+    CHECK(entries >= 3);
+}
+
+void FifoReuse::flush() {
+    flushed_ = next_;
+    warp_    = 0;
+    group_   = 0;
+}
+
+void FifoReuse::begin_draw(std::uint32_t vertex_count) {
+    flush();
+    if (vertex_count > run_of_.size()) run_of_.resize(vertex_count, 0);
+}
+
+ReuseResult FifoReuse::triangle(const std::array<std::uint32_t, 3>& vertices) {
+    std::uint32_t misses = 0; // a vertex that occurs twice counts twice here
+    for (const std::uint32_t vertex : vertices) misses += held(vertex) ? 0 : 1;
+    const bool warp_full  = warp_vertices_ != 0 && warp_ + misses > warp_vertices_;
+    const bool group_full = group_triangles_ != 0 && group_ == group_triangles_;
+    if (warp_full || group_full) flush();
+    ReuseResult result;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::uint32_t vertex = vertices[i];
+        if (!held(vertex)) {
+            CHECK_MSG(next_ != 0, "2^32 vertices shaded in one run");
+            run_of_[vertex] = next_++;
+            ++warp_;
+            result.missed = static_cast<std::uint8_t>(result.missed | 1U << i);
+        }
+        result.sequences[i] = run_of_[vertex];
+    }
+    ++group_;
+    return result;
+}
+
+void MesaReuse::begin_draw(std::uint32_t vertex_count, bool indexed) {
+    flushed_ = next_;
+    indices_ = 0;
+    indexed_ = indexed;
+    if (indexed || vertex_count <= table_entries)
+        table_.resize(table_entries);
+    else
+        table_.resize(vertex_count);
+}
+
+ReuseResult MesaReuse::triangle(const std::array<std::uint32_t, 3>& vertices) {
+    if (indexed_ && indices_ == run_indices) {
+        flushed_ = next_;
+        indices_ = 0;
+    }
+    ReuseResult result;
+    for (std::size_t i = 0; i < 3; ++i) {
+        Entry& entry = entry_of(vertices[i]);
+        if (entry.vertex != vertices[i] || entry.run < flushed_) {
+            CHECK_MSG(next_ != 0, "2^32 vertices shaded in one run");
+            entry         = {vertices[i], next_++};
+            result.missed = static_cast<std::uint8_t>(result.missed | 1U << i);
+        }
+        result.sequences[i] = entry.run;
+    }
+    indices_ += 3;
+    return result;
+}
+
+namespace {
+std::variant<FifoReuse, MesaReuse> model_of(const VertexReuseParams& params) {
+    switch (params.model) {
+    case ReuseModel::fifo: return FifoReuse(params.entries, 0, 0);
+    case ReuseModel::batch: return FifoReuse(params.entries, params.warp_vertices, params.group_triangles);
+    case ReuseModel::mesa: break;
+    }
+    return MesaReuse();
+}
+} // namespace
+
+VertexReuseModel::VertexReuseModel(const VertexReuseParams& params) : model_(model_of(params)) {}
+
+void VertexReuseModel::begin_draw(std::uint32_t vertex_count, bool indexed) {
+    if (FifoReuse* fifo = std::get_if<FifoReuse>(&model_))
+        fifo->begin_draw(vertex_count);
+    else
+        std::get_if<MesaReuse>(&model_)->begin_draw(vertex_count, indexed);
+}
+
+std::uint32_t VertexReuseModel::runs() const {
+    return std::visit([](const auto& model) { return model.runs(); }, model_);
+}
+
+} // namespace pipeline

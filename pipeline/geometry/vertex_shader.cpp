@@ -1,0 +1,32 @@
+#include "pipeline/geometry/vertex_shader.hpp"
+
+namespace pipeline {
+
+VertexShader::VertexShader(sim::Context context, const Params& params)
+    : Component(std::move(context)), params_(params), runs_(params.units) {}
+
+sim::Activity VertexShader::tick() {
+    bool progress = false;
+    while (!runs_.empty() && runs_.front().done <= cycle() && vertices_out.ready()) {
+        vertices_out.send({runs_.front().sequence});
+        runs_.pop();
+        progress = true;
+    }
+    while (!runs_.full()) {
+        const VertexTask* task = vertices_in.peek();
+        if (task == nullptr) break;
+        runs_.push({task->sequence, cycle() + params_.cycles_per_vertex});
+        vertices_in.pop();
+        ++stats_.vertices;
+        stats_.unit_cycles += params_.cycles_per_vertex;
+        progress = true;
+    }
+    if (progress) return sim::Activity::busy;
+    if (runs_.empty()) return sim::Activity::starved;
+    if (runs_.front().done <= cycle()) return sim::Activity::blocked;
+    if (runs_.full()) return sim::Activity::busy;
+    wake_at(runs_.front().done);
+    return sim::Activity::memory;
+}
+
+} // namespace pipeline

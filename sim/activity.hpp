@@ -18,12 +18,10 @@ enum class Activity : std::uint8_t {
     memory,  ///< waits for memory, or for latency inside the unit
 };
 
-inline constexpr std::size_t                                      activity_count = 6;
+inline constexpr std::size_t activity_count = 6;
 inline constexpr std::array<std::string_view, activity_count> activity_names = {"idle",    "busy",   "starved",
                                                                                 "blocked", "hazard", "memory"};
 
-constexpr std::string_view to_string(Activity activity) {
-    return activity_names[static_cast<std::size_t>(activity)];
-}
+constexpr std::string_view to_string(Activity activity) { return activity_names[static_cast<std::size_t>(activity)]; }
 
 } // namespace sim

@@ -11,7 +11,7 @@ CheckContext& check_context() {
 
 void check_failed(const char* condition, const char* file, int line, std::string_view detail) {
     const CheckContext& context = check_context();
-    std::string         text    = fmt::format("{}:{}: check failed: {}", file, line, condition);
+    std::string text = fmt::format("{}:{}: check failed: {}", file, line, condition);
     if (!detail.empty()) text += fmt::format(" ({})", detail);
     if (context.component != nullptr) text += fmt::format(", in {} at {} ps", *context.component, context.time_ps);
     throw InternalError(text);

@@ -33,7 +33,7 @@ class Interrupted : public std::runtime_error {
 /// What a failing CHECK says about where the simulation is; set by Simulation for the thread that runs it.
 struct CheckContext {
     const std::string* component = nullptr;
-    unsigned long long time_ps   = 0;
+    unsigned long long time_ps = 0;
 };
 CheckContext& check_context();
 

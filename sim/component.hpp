@@ -5,6 +5,8 @@
 #include "sim/time.hpp"
 
 #include <array>
+#include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -12,6 +14,7 @@ namespace sim {
 
 class Simulation;
 class ChannelBase;
+class WakeQueue;
 
 /// What every component is built from.
 struct Context {
@@ -27,12 +30,12 @@ class Component {
   public:
     explicit Component(Context context);
     virtual ~Component() = default;
-    Component(const Component&)            = delete;
+    Component(const Component&) = delete;
     Component& operator=(const Component&) = delete;
 
-    const std::string&   name() const { return name_; }
-    const Clock&         clock() const { return *clock_; }
-    Activity             activity() const { return activity_; }
+    const std::string& name() const { return name_; }
+    const Clock& clock() const { return *clock_; }
+    Activity activity() const { return activity_; }
     const ActivityTimes& activity_times() const { return activity_times_; }
 
     /// Ports, in the order of their declaration; for the deadlock report and the wiring list.
@@ -47,8 +50,8 @@ class Component {
     ///  - `starved` and `idle` mean that the component holds nothing.
     virtual Activity tick() = 0;
 
-    Cycle       cycle() const { return *cycle_now_; } ///< number of the present edge of this component's clock
-    Time        now() const;
+    Cycle cycle() const; ///< number of the present edge of this component's clock
+    Time now() const;
     Simulation& simulation() const { return *simulation_; }
     /// Asks for a tick `cycles` edges from now (at least 1).
     void wake_in(Cycle cycles);
@@ -59,16 +62,16 @@ class Component {
     friend class Simulation;
     friend class ChannelBase;
     friend Simulation& simulation_of(Component& component);
+    friend ChannelBase& adopt(Simulation& simulation, std::unique_ptr<ChannelBase> channel);
 
-    Simulation*               simulation_;
-    std::string               name_;
-    const Clock*              clock_;
-    const Cycle*              cycle_now_;
-    Activity                  activity_ = Activity::idle;
-    Time                      activity_since_ = 0;
-    Cycle                     last_wake_      = ~Cycle{0}; ///< edge most recently asked for; skips duplicates cheaply
-    Cycle                     last_tick_      = ~Cycle{0};
-    ActivityTimes             activity_times_{};
+    Simulation* simulation_;
+    std::string name_;
+    const Clock* clock_;
+    WakeQueue* queue_;    ///< of its clock domain
+    std::uint32_t index_; ///< in that queue
+    Activity activity_ = Activity::idle;
+    Time activity_since_ = 0;
+    ActivityTimes activity_times_{};
     std::vector<ChannelBase*> inputs_;
     std::vector<ChannelBase*> outputs_;
 };

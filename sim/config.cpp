@@ -54,7 +54,7 @@ bool is_at_or_below(std::string_view path, std::string_view section) {
 
 // Files the nodes of a parsed text under their paths.
 struct Config::Inserter {
-    Config&            config;
+    Config& config;
     const std::string& name;
     const std::string* raw; ///< set for the command line
 
@@ -78,7 +78,7 @@ struct Config::Inserter {
 
     void insert_with_origin(const toml::table& table, const std::string& path) const {
         Leaf leaf;
-        leaf.place      = place(table);
+        leaf.place = place(table);
         leaf.has_origin = true;
         for (const auto& [key, value] : table) {
             if (key.str() == "value") {
@@ -90,8 +90,9 @@ struct Config::Inserter {
                                 : key.str() == "note"   ? &leaf.origin.note
                                                         : nullptr;
             const std::string full = detail::join_path(path, key.str());
-            if (text == nullptr) detail::unknown_key({place(value), path}, std::string(key.str()),
-                                                     {"value", "origin", "source", "note"});
+            if (text == nullptr)
+                detail::unknown_key({place(value), path}, std::string(key.str()),
+                                    {"value", "origin", "source", "note"});
             if (!value.is_string()) detail::expected({place(value), full}, "text", json_of(value));
             *text = value.as_string()->get();
         }
@@ -115,7 +116,7 @@ Config Config::from_toml_text(std::string_view text, std::string name) {
 }
 
 Config Config::from_toml_file(const std::filesystem::path& path) {
-    std::ifstream     file(path, std::ios::binary);
+    std::ifstream file(path, std::ios::binary);
     const std::string text{std::istreambuf_iterator<char>(file), {}};
     if (!file.is_open() || file.bad() || std::filesystem::is_directory(path))
         throw InputError(fmt::format("{}: cannot be read", path.string()));
@@ -125,9 +126,7 @@ Config Config::from_toml_file(const std::filesystem::path& path) {
 void Config::set(std::string_view assignment) {
     const std::size_t equals = assignment.find('=');
     const std::string key(assignment.substr(0, equals));
-    const auto        bad = [&] {
-        return InputError(fmt::format("--set: expected SECTION.KEY=VALUE, got '{}'", assignment));
-    };
+    const auto bad = [&] { return InputError(fmt::format("--set: expected SECTION.KEY=VALUE, got '{}'", assignment)); };
     const bool plain_key = !key.empty() && key.find_first_of("\"'\n#[]{} \t") == std::string::npos;
     if (equals == std::string_view::npos || !plain_key) throw bad();
     const std::string value(assignment.substr(equals + 1));
@@ -150,7 +149,7 @@ const Config::Leaf* Config::use(const std::string& path, bool is_text) {
     const auto found = leaves_.find(path);
     if (found == leaves_.end()) return nullptr;
     Leaf& leaf = found->second;
-    leaf.used  = true;
+    leaf.used = true;
     if (is_text && !leaf.raw.empty() && !leaf.value.is_string()) leaf.value = leaf.raw;
     return &leaf;
 }
@@ -160,16 +159,14 @@ void Config::expect_table(const std::string& path) const {
         detail::expected({found->second.place, path}, "a table", found->second.value);
 }
 
-void Config::note_section(std::string_view section) {
-    sections_.emplace(section);
-}
+void Config::note_section(std::string_view section) { sections_.emplace(section); }
 
 void Config::note_effective(std::string_view section, ordered_json values) {
     ordered_json* place = &effective_;
     while (!section.empty()) {
         const std::size_t dot = section.find('.');
-        place                 = &(*place)[std::string(section.substr(0, dot))];
-        section               = dot == std::string_view::npos ? std::string_view() : section.substr(dot + 1);
+        place = &(*place)[std::string(section.substr(0, dot))];
+        section = dot == std::string_view::npos ? std::string_view() : section.substr(dot + 1);
     }
     if (place->is_object())
         place->update(values, true);

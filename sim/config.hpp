@@ -1,7 +1,7 @@
 // The configuration of a run: a TOML file, overridden by `--set section.key=value`, read into described structs.
 //
-// Every value knows where it was written, so that an error names file, line and column. A table that has a key `value` is a
-// value with its origin: clk_MHz = { value = 650, origin = "public", source = "...", note = "..." }.
+// Every value knows where it was written, so that an error names file, line and column. A table that has a key `value`
+// is a value with its origin: clk_MHz = { value = 650, origin = "public", source = "...", note = "..." }.
 #pragma once
 
 #include "sim/described_json.hpp"
@@ -55,11 +55,11 @@ class Config {
   private:
     struct Leaf {
         nlohmann::ordered_json value;
-        std::string            place; ///< "g70.toml:12:3", "--set"
-        std::string            raw;   ///< the text after `=` of a --set
-        Origin                 origin;
-        bool                   has_origin = false;
-        bool                   used       = false;
+        std::string place; ///< "g70.toml:12:3", "--set"
+        std::string raw;   ///< the text after `=` of a --set
+        Origin origin;
+        bool has_origin = false;
+        bool used = false;
     };
     struct Inserter;
 
@@ -75,7 +75,7 @@ class Config {
     void read_fields(const std::string& section, S& object) {
         expect_table(section);
         for_each_field(object, [&](const auto& field, auto& member) {
-            using Member           = std::remove_cvref_t<decltype(member)>;
+            using Member = std::remove_cvref_t<decltype(member)>;
             const std::string path = detail::join_path(section, field.name);
             if constexpr (Described<Member>)
                 read_fields(path, member);
@@ -84,11 +84,11 @@ class Config {
         });
     }
 
-    std::map<std::string, Leaf>        leaves_;
+    std::map<std::string, Leaf> leaves_;
     std::map<std::string, std::string> empty_tables_; ///< path -> place
-    std::set<std::string>              known_;        ///< every path that a read() asked for
-    std::set<std::string>              sections_;
-    nlohmann::ordered_json             effective_ = nlohmann::ordered_json::object();
+    std::set<std::string> known_;                     ///< every path that a read() asked for
+    std::set<std::string> sections_;
+    nlohmann::ordered_json effective_ = nlohmann::ordered_json::object();
 };
 
 } // namespace sim

@@ -4,13 +4,9 @@
 
 namespace sim {
 
-std::string number_text(double number) {
-    return fmt::format("{}", number);
-}
+std::string number_text(double number) { return fmt::format("{}", number); }
 
-std::string number_text(float number) {
-    return fmt::format("{}", number);
-}
+std::string number_text(float number) { return fmt::format("{}", number); }
 
 std::string csv_line(const std::vector<std::string>& cells) {
     std::string line;

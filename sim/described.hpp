@@ -140,7 +140,7 @@ void subtract_value(T& from, const T& earlier) {
 template <class T>
 void describe_into(std::vector<FieldInfo>& list, const T& defaults, std::string_view prefix) {
     for_each_field(defaults, [&](const auto& field, const auto& member) {
-        using Member           = std::remove_cvref_t<decltype(member)>;
+        using Member = std::remove_cvref_t<decltype(member)>;
         const std::string path = join_path(prefix, field.name);
         if constexpr (Described<Member>)
             describe_into(list, member, path);

@@ -40,21 +40,21 @@ Json histogram_to_json(const Histogram& histogram) {
     Json bins = Json::object();
     for (std::size_t bin = 0; bin < Histogram::bin_count; ++bin)
         if (histogram.bins()[bin] != 0) bins[std::to_string(histogram.bin_start(bin))] = histogram.bins()[bin];
-    return {{"count", histogram.count()}, {"sum", histogram.sum()},         {"min", histogram.min()},
-            {"max", histogram.max()},     {"mean", histogram.mean()},       {"bin_width", histogram.bin_width()},
+    return {{"count", histogram.count()}, {"sum", histogram.sum()},   {"min", histogram.min()},
+            {"max", histogram.max()},     {"mean", histogram.mean()}, {"bin_width", histogram.bin_width()},
             {"bins", std::move(bins)}};
 }
 
 Histogram histogram_from_json(const Json& json, const JsonPlace& where) {
     if (!json.is_object()) expected(where, "a histogram", json);
     const std::uint64_t width = number_in(json, "bin_width", where);
-    const Histogram     shape = width == 0 ? Histogram() : Histogram::linear(width);
-    Histogram::Bins     bins{};
+    const Histogram shape = width == 0 ? Histogram() : Histogram::linear(width);
+    Histogram::Bins bins{};
     if (const auto list = json.find("bins"); list != json.end()) {
         if (!list->is_object()) expected({where.place, where.path + ".bins"}, "a table", *list);
         for (const auto& item : list->items()) {
             std::uint64_t start = 0;
-            const bool    good  = !item.key().empty() && item.key().size() < 21 &&
+            const bool good = !item.key().empty() && item.key().size() < 21 &&
                               item.key().find_first_not_of("0123456789") == std::string::npos;
             if (good) start = std::stoull(item.key());
             const std::size_t bin = shape.bin_of(start);

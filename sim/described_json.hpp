@@ -18,13 +18,13 @@ using Json = nlohmann::ordered_json;
 /// Where a value comes from: `place` is a file or an option, `path` the place within it.
 struct JsonPlace {
     std::string_view place;
-    std::string      path;
+    std::string path;
 };
 
 [[noreturn]] void expected(const JsonPlace& where, std::string_view what, const Json& got);
 [[noreturn]] void unknown_key(const JsonPlace& where, const std::string& key, const std::vector<std::string>& known);
-Json              histogram_to_json(const Histogram& histogram);
-Histogram         histogram_from_json(const Json& json, const JsonPlace& where);
+Json histogram_to_json(const Histogram& histogram);
+Histogram histogram_from_json(const Json& json, const JsonPlace& where);
 
 template <class T>
 Json value_to_json(const T& value) {
@@ -66,7 +66,7 @@ template <class T, class F>
 void read_value(T& value, const Json& json, const JsonPlace& where, const F& field);
 
 template <class T>
-    requires Described<T>
+requires Described<T>
 void read_struct(T& object, const Json& json, const JsonPlace& where) {
     if (!json.is_object()) expected(where, "a table", json);
     const auto& names = field_names<T>;
@@ -106,8 +106,8 @@ void read_value(T& value, const Json& json, const JsonPlace& where, const F& fie
         value.value = json.get<std::uint64_t>();
     } else if constexpr (NamedEnum<T>) {
         const auto& names = EnumNames<T>::names;
-        const auto  found = json.is_string() ? std::find(names.begin(), names.end(), json.get_ref<const std::string&>())
-                                             : names.end();
+        const auto found =
+            json.is_string() ? std::find(names.begin(), names.end(), json.get_ref<const std::string&>()) : names.end();
         if (found == names.end()) expected(where, wanted<T>(range_text(field)), json);
         value = static_cast<T>(found - names.begin());
     } else {

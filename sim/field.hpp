@@ -1,4 +1,5 @@
-// A struct says once what its members are: `static constexpr auto fields()` returns a tuple of sim::field<&S::member>(...).
+// A struct says once what its members are: `static constexpr auto fields()` returns a tuple of
+// sim::field<&S::member>(...).
 //
 // The name of a field is the name of the member, taken from the member pointer. Everything else that a parameter or a
 // statistic needs (configuration, help, JSON, CSV, sums, differences) derives from this list: see described.hpp.
@@ -23,7 +24,9 @@ template <class E>
 struct EnumNames {};
 
 template <class E>
-concept NamedEnum = std::is_enum_v<E> && requires { EnumNames<E>::names.size(); };
+concept NamedEnum = std::is_enum_v<E> && requires {
+    EnumNames<E>::names.size();
+};
 
 /// The name of an enumerator, or "?" for a value that has none.
 template <NamedEnum E>
@@ -33,7 +36,9 @@ constexpr std::string_view enum_name(E value) {
 }
 
 template <class S>
-concept Described = requires { std::tuple_size<decltype(S::fields())>::value; };
+concept Described = requires {
+    std::tuple_size<decltype(S::fields())>::value;
+};
 
 template <class T>
 concept Integer = std::integral<T> && !std::same_as<T, bool>;
@@ -46,8 +51,8 @@ namespace detail {
 template <auto Member>
 consteval std::string_view member_name() {
     std::string_view text = __PRETTY_FUNCTION__;
-    text                  = text.substr(text.find("Member = "));
-    text                  = text.substr(0, text.find_first_of(";]"));
+    text = text.substr(text.find("Member = "));
+    text = text.substr(0, text.find_first_of(";]"));
     return text.substr(text.rfind("::") + 2);
 }
 
@@ -56,7 +61,7 @@ struct MemberOf;
 template <class S, class M>
 struct MemberOf<M S::*> {
     using Struct = S;
-    using Value  = M;
+    using Value = M;
 };
 
 template <class T>
@@ -73,8 +78,8 @@ struct Innermost {
     using type = T;
 };
 template <class T>
-    requires(IsArray<T>::value || IsVector<T>::value)
-struct Innermost<T> : Innermost<typename T::value_type> {};
+requires(IsArray<T>::value || IsVector<T>::value) struct Innermost<T> : Innermost<typename T::value_type> {
+};
 
 struct AnyValue {
     template <class T>
@@ -97,45 +102,37 @@ concept Sequence = FixedArray<T> || detail::IsVector<T>::value;
 template <auto Member>
 struct Field {
     using Struct = typename detail::MemberOf<decltype(Member)>::Struct;
-    using Value  = typename detail::MemberOf<decltype(Member)>::Value;
-    using Inner  = typename detail::Innermost<Value>::type;
-    using Bound  = std::conditional_t<Number<Inner>, Inner, std::uint64_t>;
+    using Value = typename detail::MemberOf<decltype(Member)>::Value;
+    using Inner = typename detail::Innermost<Value>::type;
+    using Bound = std::conditional_t<Number<Inner>, Inner, std::uint64_t>;
 
     static constexpr std::string_view name = detail::member_name<Member>();
 
     std::string_view text; ///< what it is, one line
     std::string_view unit_text;
-    bool             has_low  = false;
-    bool             has_high = false;
-    Bound            low{};
-    Bound            high{};
+    bool has_low = false;
+    bool has_high = false;
+    Bound low{};
+    Bound high{};
 
     constexpr Field unit(std::string_view what) const {
-        Field field     = *this;
+        Field field = *this;
         field.unit_text = what;
         return field;
     }
-    constexpr Field at_least(Bound bound) const
-        requires Number<Inner>
-    {
-        Field field   = *this;
-        field.low     = bound;
+    constexpr Field at_least(Bound bound) const requires Number<Inner> {
+        Field field = *this;
+        field.low = bound;
         field.has_low = true;
         return field;
     }
-    constexpr Field at_most(Bound bound) const
-        requires Number<Inner>
-    {
-        Field field    = *this;
-        field.high     = bound;
+    constexpr Field at_most(Bound bound) const requires Number<Inner> {
+        Field field = *this;
+        field.high = bound;
         field.has_high = true;
         return field;
     }
-    constexpr Field range(Bound from, Bound to) const
-        requires Number<Inner>
-    {
-        return at_least(from).at_most(to);
-    }
+    constexpr Field range(Bound from, Bound to) const requires Number<Inner> { return at_least(from).at_most(to); }
     /// False for a NaN where a bound is set.
     constexpr bool contains(Bound value) const { return (!has_low || value >= low) && (!has_high || value <= high); }
 
@@ -152,7 +149,7 @@ constexpr Field<Member> field(std::string_view text) {
 
 /// Calls visit(field, member) for each field of `object`, in the order of fields().
 template <class S, class Visit>
-    requires Described<std::remove_const_t<S>>
+requires Described<std::remove_const_t<S>>
 constexpr void for_each_field(S& object, Visit&& visit) {
     std::apply([&](const auto&... field) { (visit(field, field.of(object)), ...); }, S::fields());
 }

@@ -13,7 +13,7 @@ std::uint64_t hash_name(std::string_view name) {
 
 std::mt19937_64 make_engine(std::uint64_t seed, std::string_view name) {
     const std::uint64_t stream = hash_name(name);
-    std::seed_seq       words{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32U),
+    std::seed_seq words{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32U),
                         static_cast<std::uint32_t>(stream), static_cast<std::uint32_t>(stream >> 32U)};
     return std::mt19937_64(words);
 }

@@ -4,63 +4,62 @@
 #include "sim/check.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <fmt/format.h>
-#include <functional>
 
 namespace sim {
 
 namespace {
-constexpr std::uint64_t instants_between_stop_checks = 1024;
+constexpr std::uint64_t instants_between_looks = 1024;
 } // namespace
 
 Component::Component(Context context)
-    : simulation_(&context.simulation), name_(std::move(context.name)), clock_(&context.clock),
-      cycle_now_(&simulation_->domains_[clock_->domain]->current) {
+    : simulation_(&context.simulation), name_(std::move(context.name)), clock_(&context.clock) {
     const auto same_name = [this](const Component* other) { return other->name_ == name_; };
     CHECK_MSG(std::none_of(simulation_->components_.begin(), simulation_->components_.end(), same_name), name_);
+    CHECK_MSG(clock_->domain < simulation_->domains_.size(), name_);
+    Simulation::Domain& domain = *simulation_->domains_[clock_->domain];
+    CHECK_MSG(clock_ == &domain.clock, name_);
+    queue_ = &domain.queue;
+    index_ = queue_->add_component();
+    domain.components.push_back(this);
     simulation_->components_.push_back(this);
 }
 
-Simulation& simulation_of(Component& component) {
-    return *component.simulation_;
-}
+Simulation& simulation_of(Component& component) { return *component.simulation_; }
 
-ChannelBase& adopt(Simulation& simulation, std::unique_ptr<ChannelBase> channel) {
-    simulation.owned_channels_.push_back(std::move(channel));
-    return *simulation.owned_channels_.back();
-}
+// Looks up from the work now and then: does the user want it to stop, does anything still move?
+class Simulation::Watch {
+  public:
+    Watch(const Simulation& simulation, const std::atomic<bool>* stop) : simulation_(simulation), stop_(stop) {}
 
-ChannelBase::ChannelBase(Simulation& simulation, std::string name, ChannelConfig config, Component& sender,
-                         Component& receiver)
-    : simulation_(&simulation), name_(std::move(name)), config_(config), sender_(&sender), receiver_(&receiver),
-      same_clock_(sender.clock().domain == receiver.clock().domain) {
-    CHECK_MSG(config_.latency >= 1 && config_.width >= 1, name_);
-    CHECK_MSG(&simulation_of(receiver) == &simulation, name_);
-    if (config_.capacity == 0) config_.capacity = static_cast<std::uint32_t>(config_.width * (config_.latency + 1));
-    sender.outputs_.push_back(this);
-    receiver.inputs_.push_back(this);
-    simulation.channels_.push_back(this);
-}
+    void note_instant() {
+        if (++instants_ % instants_between_looks == 0) look();
+    }
 
-Cycle ChannelBase::sender_cycle() const {
-    return *sender_->cycle_now_;
-}
+  private:
+    void look() {
+        if (stop_ != nullptr && stop_->load(std::memory_order_relaxed)) throw Interrupted();
+        std::uint64_t moved = 0;
+        for (const ChannelBase* link : simulation_.channels_) moved += link->sent() + link->received();
+        if (moved != moved_) {
+            moved_ = moved;
+            moved_last_ = instants_;
+        }
+        if (instants_ - moved_last_ < simulation_.patience_) return;
+        std::string busy;
+        for (const Component* component : simulation_.components_)
+            if (component->activity() == Activity::busy) busy += (busy.empty() ? "" : ", ") + component->name();
+        throw LivelockError(fmt::format("livelock at {} ps: no message moved in the last {} instants; busy: {}\n{}",
+                                        simulation_.now_, instants_ - moved_last_, busy, simulation_.wait_report()));
+    }
 
-// The sender must not sleep through room that appears at its next edge: either the width of this edge is used up, or a
-// receive of this very instant is not visible yet.
-void ChannelBase::wait_for_room(std::uint64_t seen) {
-    if (seen != received_ || sent_ - seen < config_.capacity)
-        simulation_->wake_at_cycle(*sender_, sender_cycle() + 1);
-    else
-        sender_waits_ = true;
-}
-
-void ChannelBase::wake_sender() {
-    if (same_clock_)
-        simulation_->wake_at_cycle(*sender_, *receiver_->cycle_now_ + 1);
-    else
-        simulation_->wake(*sender_, simulation_->now() + 1);
-}
+    const Simulation& simulation_;
+    const std::atomic<bool>* stop_;
+    std::uint64_t instants_ = 0;
+    std::uint64_t moved_ = 0;
+    std::uint64_t moved_last_ = 0;
+};
 
 Simulation::Simulation(std::uint64_t seed, Mode mode, std::uint64_t shuffle_seed)
     : seed_(seed), mode_(mode), shuffle_(shuffle_seed, "tick order") {}
@@ -68,59 +67,61 @@ Simulation::Simulation(std::uint64_t seed, Mode mode, std::uint64_t shuffle_seed
 Simulation::~Simulation() = default;
 
 const Clock& Simulation::add_clock(std::string name, double mhz) {
-    CHECK_MSG(mhz > 0 && mhz <= 1e6, name);
-    auto domain   = std::make_unique<Domain>();
+    CHECK_MSG(mhz >= 1e-3 && mhz <= 1e6, name);
+    auto domain = std::make_unique<Domain>();
     domain->clock = {std::move(name), period_of_mhz(mhz), static_cast<std::uint32_t>(domains_.size())};
     domains_.push_back(std::move(domain));
     return domains_.back()->clock;
 }
 
 void Simulation::wake(Component& component, Time at) {
+    CHECK_MSG(at > now_ || !started_, component.name_);
     wake_at_cycle(component, component.clock_->cycle_at(at));
 }
 
-void Simulation::schedule_far(Domain& domain, Component& component, Cycle cycle) {
-    CHECK_MSG(cycle > domain.current || domain.current == ~Cycle{0}, component.name_);
-    domain.far.push_back({cycle, wakes_++, &component});
-    std::push_heap(domain.far.begin(), domain.far.end(), std::greater<>());
+void Simulation::wake_far(Component& component, Cycle cycle) {
+    catch_up(*domains_[component.clock_->domain]);
+    component.queue_->wake(component.index_, cycle);
 }
 
-Cycle Simulation::Domain::next_edge() const {
-    Cycle next = far.empty() ? ~Cycle{0} : far.front().cycle;
-    // The wheel holds edges current + 1 .. current + wheel_size - 1, found by scanning its occupancy words in order.
-    const Cycle first = current + 1;
-    for (Cycle step = 0; step < wheel_size;) {
-        const Cycle         slot = (first + step) % wheel_size;
-        const std::uint64_t word = occupied[slot / 64] >> (slot % 64);
-        if (word != 0) return std::min(next, first + step + static_cast<Cycle>(std::countr_zero(word)));
-        step += 64 - slot % 64;
-    }
-    return next;
+// The queue of a clock that had nothing to do stays behind. When it catches up, more edges are within reach of its
+// wheel.
+void Simulation::catch_up(Domain& domain) {
+    if (!started_) return;
+    const Cycle last_edge = domain.clock.cycle_before(now_);
+    if (domain.queue.current() == last_edge) return;
+    CHECK(domain.queue.next() > last_edge);
+    domain.queue.advance(last_edge);
 }
 
-bool Simulation::next_instant(Time& instant) const {
-    instant = ~Time{0};
+Time Simulation::next_instant() {
+    Time instant = forever;
     for (const auto& domain : domains_) {
-        const Cycle edge = domain->next_edge();
-        if (edge != ~Cycle{0}) instant = std::min(instant, domain->clock.time_of(edge));
+        domain->edge = domain->queue.next();
+        domain->time = domain->edge == WakeQueue::none ? forever : domain->clock.time_of(domain->edge);
+        instant = std::min(instant, domain->time);
     }
-    return instant != ~Time{0};
+    return instant;
 }
 
-void Simulation::collect_due(Domain& domain, Cycle cycle) {
-    const Cycle slot = cycle % wheel_size;
-    if (cycle - domain.current < wheel_size) {
-        std::vector<Component*>& ready = domain.wheel[slot];
-        due_.insert(due_.end(), ready.begin(), ready.end());
-        ready.clear();
-        domain.occupied[slot / 64] &= ~(std::uint64_t{1} << (slot % 64));
+Time Simulation::next_edge_of_any_clock() {
+    Time instant = forever;
+    for (const auto& domain : domains_) {
+        domain->edge = domain->queue.current() + 1;
+        domain->time = domain->clock.time_of(domain->edge);
+        instant = std::min(instant, domain->time);
     }
-    while (!domain.far.empty() && domain.far.front().cycle == cycle) {
-        due_.push_back(domain.far.front().component);
-        std::pop_heap(domain.far.begin(), domain.far.end(), std::greater<>());
-        domain.far.pop_back();
-    }
-    domain.current = cycle;
+    return instant;
+}
+
+// Every clock that has an edge knows it before the first component ticks.
+void Simulation::begin_instant(Time instant) {
+    CHECK(instant > now_ || !started_);
+    now_ = instant;
+    started_ = true;
+    context_->time_ps = instant;
+    for (const auto& domain : domains_)
+        if (domain->time == instant) domain->queue.advance(domain->edge);
 }
 
 void Simulation::book(Component& component, Activity next) {
@@ -128,72 +129,98 @@ void Simulation::book(Component& component, Activity next) {
     component.activity_times_[static_cast<std::size_t>(component.activity_)] += now_ - component.activity_since_;
     if (observer_ != nullptr && now_ > component.activity_since_)
         observer_->activity(component, component.activity_, component.activity_since_, now_);
-    component.activity_       = next;
+    component.activity_ = next;
     component.activity_since_ = now_;
 }
 
-void Simulation::tick(Component& component, Cycle cycle) {
-    if (component.last_tick_ == cycle) return;
-    component.last_tick_      = cycle;
-    check_context().component = &component.name_;
-    const Activity activity   = component.tick();
+Activity Simulation::tick(Component& component) {
+    context_->component = &component.name_;
+    const Activity activity = component.tick();
     ++ticks_;
     book(component, activity);
-    if (activity == Activity::busy) wake_at_cycle(component, cycle + 1);
+    return activity;
 }
 
-void Simulation::serve(Time instant) {
-    now_                    = instant;
-    check_context().time_ps = instant;
+void Simulation::serve() {
+    for (const auto& domain : domains_) {
+        if (domain->time != now_) continue;
+        WakeQueue& queue = domain->queue;
+        for (std::size_t word = 0; word < queue.words(); ++word) {
+            Component* const* components = &domain->components[word * 64];
+            std::uint64_t busy = 0;
+            for (std::uint64_t due = queue.take(word); due != 0; due &= due - 1)
+                if (tick(*components[std::countr_zero(due)]) == Activity::busy) busy |= due & -due;
+            queue.wake_next(word, busy);
+        }
+    }
+}
+
+void Simulation::serve_shuffled() {
     due_.clear();
     for (const auto& domain : domains_) {
-        const Cycle cycle = domain->clock.cycle_before(instant);
-        if (domain->clock.time_of(cycle) != instant) {
-            // Not an edge of this clock. Its `current` must still follow time, or wake-ups would be filed too early.
-            continue;
-        }
-        if (mode_ == Mode::never_sleep || domain->next_edge() == cycle) collect_due(*domain, cycle);
-        if (mode_ != Mode::never_sleep) continue;
-        for (Component* component : components_)
-            if (component->clock_->domain == domain->clock.domain) due_.push_back(component);
+        if (domain->time != now_) continue;
+        for (std::size_t word = 0; word < domain->queue.words(); ++word)
+            for (std::uint64_t due = domain->queue.take(word); due != 0; due &= due - 1)
+                due_.push_back(domain->components[word * 64 + static_cast<std::size_t>(std::countr_zero(due))]);
     }
-    if (mode_ == Mode::shuffled)
-        for (std::size_t left = due_.size(); left > 1; --left) std::swap(due_[left - 1], due_[shuffle_.below(left)]);
-    for (Component* component : due_) tick(*component, *component->cycle_now_);
+    for (std::size_t left = due_.size(); left > 1; --left) std::swap(due_[left - 1], due_[shuffle_.below(left)]);
+    tick_all(due_);
 }
 
-void Simulation::run_asleep(const std::atomic<bool>* stop) {
-    Time instant = 0;
-    for (std::uint64_t served = 1; next_instant(instant); ++served) {
-        serve(instant);
-        if (stop != nullptr && served % instants_between_stop_checks == 0 && stop->load(std::memory_order_relaxed))
-            throw Interrupted();
+void Simulation::serve_everybody() {
+    for (const auto& domain : domains_) {
+        if (domain->time != now_) continue;
+        for (std::size_t word = 0; word < domain->queue.words(); ++word) domain->queue.take(word);
+        tick_all(domain->components);
+    }
+}
+
+void Simulation::tick_all(const std::vector<Component*>& components) {
+    for (Component* component : components)
+        if (tick(*component) == Activity::busy) component->wake_in(1);
+}
+
+void Simulation::run_asleep(Watch& watch) {
+    for (Time instant = next_instant(); instant != forever; instant = next_instant()) {
+        begin_instant(instant);
+        if (mode_ == Mode::shuffled)
+            serve_shuffled();
+        else
+            serve();
+        watch.note_instant();
     }
 }
 
 // Serves every edge of every clock for as long as a sleeping run would have something due, so both end at one time.
-void Simulation::run_sleepless(const std::atomic<bool>* stop) {
-    Time instant = 0;
-    while (next_instant(instant)) {
-        for (;;) {
-            Time edge = ~Time{0};
-            for (const auto& domain : domains_)
-                edge = std::min(edge, domain->clock.time_of(domain->current + 1));
-            if (edge > instant) break;
-            serve(edge);
-            if (stop != nullptr && stop->load(std::memory_order_relaxed)) throw Interrupted();
+void Simulation::run_sleepless(Watch& watch) {
+    for (Time last = next_instant(); last != forever; last = next_instant())
+        for (Time edge = next_edge_of_any_clock(); edge <= last; edge = next_edge_of_any_clock()) {
+            begin_instant(edge);
+            serve_everybody();
+            watch.note_instant();
         }
-    }
 }
 
 void Simulation::run(const std::atomic<bool>* stop) {
+    // Whatever ends the run, the check context of this thread must not go on naming a component of it.
+    struct Running {
+        Simulation& simulation;
+        CheckContext before = check_context();
+        ~Running() {
+            check_context() = before;
+            simulation.running_ = false;
+        }
+    };
+    CHECK(!running_);
+    const Running running{*this};
     running_ = true;
+    context_ = &check_context();
+    Watch watch(*this, stop);
     if (mode_ == Mode::never_sleep)
-        run_sleepless(stop);
+        run_sleepless(watch);
     else
-        run_asleep(stop);
-    running_                  = false;
-    check_context().component = nullptr;
+        run_asleep(watch);
+    for (const auto& domain : domains_) catch_up(*domain);
     settle_activities();
     throw_if_stuck();
 }
@@ -208,7 +235,8 @@ void Simulation::settle_activities() {
 }
 
 void Simulation::throw_if_stuck() const {
-    bool stuck = std::any_of(channels_.begin(), channels_.end(), [](const ChannelBase* link) { return !link->empty(); });
+    bool stuck =
+        std::any_of(channels_.begin(), channels_.end(), [](const ChannelBase* link) { return !link->empty(); });
     for (const Component* component : components_)
         stuck |= component->activity() != Activity::idle && component->activity() != Activity::starved;
     if (stuck) throw DeadlockError(fmt::format("deadlock at {} ps\n{}", now_, wait_report()));
@@ -217,15 +245,15 @@ void Simulation::throw_if_stuck() const {
 namespace {
 
 struct Wait {
-    const Component*   who;
-    const Component*   whom;
+    const Component* who;
+    const Component* whom;
     const ChannelBase* link;
-    bool               for_room;
+    bool for_room;
 };
 
 std::vector<Wait> waits_of(const Component& component) {
     std::vector<Wait> waits;
-    const Activity    activity = component.activity();
+    const Activity activity = component.activity();
     if (activity == Activity::idle || activity == Activity::busy) return waits;
     for (const ChannelBase* link : component.outputs())
         if (link->full()) waits.push_back({&component, &link->receiver(), link, true});
@@ -262,12 +290,11 @@ std::string describe(const Wait& wait) {
 } // namespace
 
 std::string Simulation::wait_report() const {
-    std::string       report;
+    std::string report;
     std::vector<Wait> cycle;
     for (const Component* component : components_) {
         const bool holds_work = component->activity() == Activity::blocked ||
-                                component->activity() == Activity::hazard ||
-                                component->activity() == Activity::memory;
+                                component->activity() == Activity::hazard || component->activity() == Activity::memory;
         std::vector<const Component*> seen;
         if (cycle.empty() && holds_work && !find_cycle(*component, *component, seen, cycle)) cycle.clear();
     }
@@ -277,9 +304,10 @@ std::string Simulation::wait_report() const {
     }
     report += "all waits:\n";
     for (const Component* component : components_) {
-        const bool holds_nothing = component->activity() == Activity::idle || component->activity() == Activity::starved;
-        const bool has_input     = std::any_of(component->inputs().begin(), component->inputs().end(),
-                                               [](const ChannelBase* link) { return !link->empty(); });
+        const bool holds_nothing =
+            component->activity() == Activity::idle || component->activity() == Activity::starved;
+        const bool has_input = std::any_of(component->inputs().begin(), component->inputs().end(),
+                                           [](const ChannelBase* link) { return !link->empty(); });
         if (holds_nothing && !has_input) continue;
         const std::vector<Wait> waits = waits_of(*component);
         for (const Wait& wait : waits) report += "  " + describe(wait);

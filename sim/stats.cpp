@@ -8,9 +8,9 @@ Histogram Histogram::from_parts(std::uint64_t bin_width, std::uint64_t sum, std:
                                 std::uint64_t maximum, const Bins& bins) {
     Histogram histogram;
     histogram.bin_width_ = bin_width;
-    histogram.sum_       = sum;
-    histogram.max_       = maximum;
-    histogram.bins_      = bins;
+    histogram.sum_ = sum;
+    histogram.max_ = maximum;
+    histogram.bins_ = bins;
     for (const std::uint64_t bin : bins) histogram.count_ += bin;
     if (histogram.count_ != 0) histogram.min_ = minimum;
     return histogram;
@@ -36,7 +36,7 @@ Histogram Histogram::since(const Histogram& earlier) const {
     Histogram between = *this;
     between.count_ -= earlier.count_;
     if (between.count_ == 0) {
-        between            = Histogram();
+        between = Histogram();
         between.bin_width_ = bin_width_;
         return between;
     }

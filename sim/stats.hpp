@@ -41,7 +41,7 @@ struct HighWater {
 class Histogram {
   public:
     static constexpr std::size_t bin_count = 65;
-    using Bins                             = std::array<std::uint64_t, bin_count>;
+    using Bins = std::array<std::uint64_t, bin_count>;
 
     constexpr Histogram() = default;
     static constexpr Histogram linear(std::uint64_t bin_width) {
@@ -66,8 +66,8 @@ class Histogram {
     std::uint64_t sum() const { return sum_; }
     std::uint64_t min() const { return count_ == 0 ? 0 : min_; } ///< 0 when empty
     std::uint64_t max() const { return max_; }
-    double        mean() const { return count_ == 0 ? 0.0 : static_cast<double>(sum_) / static_cast<double>(count_); }
-    const Bins&   bins() const { return bins_; }
+    double mean() const { return count_ == 0 ? 0.0 : static_cast<double>(sum_) / static_cast<double>(count_); }
+    const Bins& bins() const { return bins_; }
     std::uint64_t bin_width() const { return bin_width_; } ///< 0: powers of two
 
     std::size_t bin_of(std::uint64_t value) const {
@@ -89,11 +89,11 @@ class Histogram {
 
   private:
     std::uint64_t bin_width_ = 0;
-    std::uint64_t count_     = 0;
-    std::uint64_t sum_       = 0;
-    std::uint64_t min_       = ~std::uint64_t{0};
-    std::uint64_t max_       = 0;
-    Bins          bins_{};
+    std::uint64_t count_ = 0;
+    std::uint64_t sum_ = 0;
+    std::uint64_t min_ = ~std::uint64_t{0};
+    std::uint64_t max_ = 0;
+    Bins bins_{};
 };
 
 } // namespace sim

@@ -14,8 +14,8 @@ using Cycle = std::uint64_t;
 
 /// A clock domain: an edge every `period` picoseconds, the first one at time 0.
 struct Clock {
-    std::string   name;
-    Time          period = 1; ///< picoseconds, at least 1
+    std::string name;
+    Time period = 1;          ///< picoseconds, at least 1
     std::uint32_t domain = 0; ///< index within its Simulation
 
     Time time_of(Cycle cycle) const { return cycle * period; }
@@ -26,8 +26,6 @@ struct Clock {
 };
 
 /// Period of a frequency in MHz, rounded to a picosecond; 650 MHz -> 1538 ps.
-constexpr Time period_of_mhz(double mhz) {
-    return static_cast<Time>(1e6 / mhz + 0.5);
-}
+constexpr Time period_of_mhz(double mhz) { return static_cast<Time>(1e6 / mhz + 0.5); }
 
 } // namespace sim

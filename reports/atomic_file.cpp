@@ -46,7 +46,7 @@ void AtomicFile::commit() {
 
 void write_file(const fs::path& path, std::string_view text) {
     AtomicFile file(path);
-    const int  descriptor = ::open(file.temporary().c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    const int descriptor = ::open(file.temporary().c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
     if (descriptor < 0) cannot_write(path, errno);
     int error = write_all(descriptor, text);
     // Some file systems notice only here that the disk is full.
@@ -62,7 +62,7 @@ void make_directory(const fs::path& directory) {
         throw sim::InputError(fmt::format("{}: cannot be made a folder: {}", directory.string(), error.message()));
     // Asked by doing: access rights alone do not tell about read-only file systems.
     const AtomicFile probe(directory / "probe");
-    const int        descriptor = ::open(probe.temporary().c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+    const int descriptor = ::open(probe.temporary().c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
     if (descriptor < 0) cannot_write(directory, errno);
     ::close(descriptor);
 }

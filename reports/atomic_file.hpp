@@ -11,7 +11,7 @@ class AtomicFile {
   public:
     explicit AtomicFile(std::filesystem::path path);
     ~AtomicFile();
-    AtomicFile(const AtomicFile&)            = delete;
+    AtomicFile(const AtomicFile&) = delete;
     AtomicFile& operator=(const AtomicFile&) = delete;
 
     /// A name in the folder of the file, so that renaming does not copy. Nothing exists there yet.
@@ -22,7 +22,7 @@ class AtomicFile {
   private:
     std::filesystem::path path_;
     std::filesystem::path temporary_;
-    bool                  done_ = false;
+    bool done_ = false;
 };
 
 /// Writes a whole file; throws sim::InputError "PATH: cannot be written: REASON".

@@ -7,7 +7,7 @@ namespace reports {
 
 /// sRGB encoding (IEC 61966-2-1) of linear light; values outside [0, 1] and NaN are clamped.
 std::uint8_t encode_srgb(float linear);
-Colour       encode_srgb(float red, float green, float blue);
+Colour encode_srgb(float red, float green, float blue);
 
 /// Counts and errors, `position` in [0, 1]: nearly black, violet, red, orange, pale yellow; rising in brightness, so
 /// that it reads the same in grey.

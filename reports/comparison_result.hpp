@@ -15,15 +15,15 @@ namespace reports {
 
 /// What was drawn, as its file or generator states it.
 struct SceneFacts {
-    std::string              name;
-    std::string              hash;                ///< of everything that was read, 16 hexadecimal digits
-    std::uint64_t            triangles       = 0; ///< in the file, each counted once
-    std::uint64_t            triangles_drawn = 0; ///< of all instances of all draws
-    std::uint64_t            vertices        = 0;
-    std::uint64_t            draws           = 0;
-    std::uint64_t            textures        = 0;
-    std::string              camera; ///< as asked for: "auto"
-    std::vector<std::string> notes;  ///< what of the input is not drawn
+    std::string name;
+    std::string hash;                  ///< of everything that was read, 16 hexadecimal digits
+    std::uint64_t triangles = 0;       ///< in the file, each counted once
+    std::uint64_t triangles_drawn = 0; ///< of all instances of all draws
+    std::uint64_t vertices = 0;
+    std::uint64_t draws = 0;
+    std::uint64_t textures = 0;
+    std::string camera;             ///< as asked for: "auto"
+    std::vector<std::string> notes; ///< what of the input is not drawn
 };
 
 /// The frame after the last pass, row 0 first.
@@ -33,29 +33,29 @@ struct FramePixels {
 };
 
 struct GpuFacts {
-    std::string                        name;
-    nlohmann::ordered_json             parameters; ///< every effective value, nested by unit
-    std::map<std::string, sim::Origin> origins;    ///< of those values whose origin is stated, by path
+    std::string name;
+    nlohmann::ordered_json parameters;          ///< every effective value, nested by unit
+    std::map<std::string, sim::Origin> origins; ///< of those values whose origin is stated, by path
 };
 
 /// Cost of the comparison on the machine that ran it: the only numbers that differ between two equal runs.
 struct HostCost {
-    double        seconds           = 0; ///< everything: reading, shading, all runs, comparing
-    double        front_end_seconds = 0; ///< rasterizing and shading the frame once, and the reference
-    std::uint64_t peak_bytes        = 0; ///< resident memory at its highest
-    unsigned      threads           = 1;
+    double seconds = 0;           ///< everything: reading, shading, all runs, comparing
+    double front_end_seconds = 0; ///< rasterizing and shading the frame once, and the reference
+    std::uint64_t peak_bytes = 0; ///< resident memory at its highest
+    unsigned threads = 1;
 };
 
 struct Comparison {
-    SceneFacts                            scene;
-    GpuFacts                              gpu;
+    SceneFacts scene;
+    GpuFacts gpu;
     std::shared_ptr<const pipeline::Frame> frame;
-    std::uint64_t                         seed = 1;
-    FramePixels                           reference;        ///< in submission order, without time
-    std::vector<std::uint32_t>            depth_complexity; ///< fragments drawn onto each pixel in one geometry pass
-    std::vector<pipeline::RunResult>      runs;             ///< in the order in which the designs were asked for
-    std::vector<FramePixels>              pixels;           ///< of each run
-    HostCost                              host;
+    std::uint64_t seed = 1;
+    FramePixels reference;                       ///< in submission order, without time
+    std::vector<std::uint32_t> depth_complexity; ///< fragments drawn onto each pixel in one geometry pass
+    std::vector<pipeline::RunResult> runs;       ///< in the order in which the designs were asked for
+    std::vector<FramePixels> pixels;             ///< of each run
+    HostCost host;
 
     std::uint32_t width() const { return frame->view.width; }
     std::uint32_t height() const { return frame->view.height; }

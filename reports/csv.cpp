@@ -39,9 +39,9 @@ class WideTable {
     }
 
   private:
-    std::vector<std::string>                     columns_;
+    std::vector<std::string> columns_;
     std::unordered_map<std::string, std::size_t> index_;
-    std::vector<std::vector<std::string>>        rows_;
+    std::vector<std::vector<std::string>> rows_;
 };
 
 // Numbers that every design has; the columns of caches and bytes follow them.
@@ -107,8 +107,8 @@ Table designs_table(const Comparison& comparison) {
                                                         {"duplicate", run.layers[layer].duplicate},
                                                         {"unsorted", run.layers[layer].unsorted}};
         further["caches"] = run.caches;
-        further["bytes"]  = run.bytes;
-        further["area"]   = run.area;
+        further["bytes"] = run.bytes;
+        further["area"] = run.area;
         table.add_row(design_cells(run), flatten(further));
     }
     return table.finish("designs.csv");

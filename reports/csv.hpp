@@ -9,8 +9,8 @@
 namespace reports {
 
 struct Table {
-    std::string                           name;   ///< of the file: "designs.csv"
-    std::vector<std::string>              header; ///< with units: "cycles [core cycles]"
+    std::string name;                ///< of the file: "designs.csv"
+    std::vector<std::string> header; ///< with units: "cycles [core cycles]"
     std::vector<std::vector<std::string>> rows;
 
     std::string text() const;

@@ -5,7 +5,7 @@ namespace reports {
 namespace {
 
 constexpr char first = ' ';
-constexpr char last  = '~';
+constexpr char last = '~';
 
 // One octal number a row: its five bits are the dots.
 constexpr std::array<Glyph, last - first + 1> glyphs{{

@@ -6,7 +6,7 @@
 
 namespace reports {
 
-inline constexpr std::uint32_t glyph_width  = 5;
+inline constexpr std::uint32_t glyph_width = 5;
 inline constexpr std::uint32_t glyph_height = 7;
 
 /// Row by row from the top; bit 4 of a row is its left dot.

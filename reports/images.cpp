@@ -53,7 +53,7 @@ void write_atomically(const fs::path& path, const std::vector<std::string>& chan
     std::vector<const char*> names;
     for (const std::string& name : channels) names.push_back(name.c_str());
     const RopsimImageShape shape{width, height, static_cast<std::uint32_t>(names.size()), names.data()};
-    AtomicFile             file(path);
+    AtomicFile file(path);
     std::array<char, error_size> error{};
     if (write(file.temporary().c_str(), &shape, error) != 0) cannot_write(path, file.temporary(), error.data());
     file.commit();
@@ -69,7 +69,8 @@ void write_png(const fs::path& path, const Picture& picture) {
     const RopsimImageModule& images = image_module();
     write_atomically(path, {"R", "G", "B"}, picture.width, picture.height,
                      [&](const char* name, const RopsimImageShape* shape, std::array<char, error_size>& error) {
-                         return images.write_png(name, shape, picture.pixels.data()->data(), error.data(), error.size());
+                         return images.write_png(name, shape, picture.pixels.data()->data(), error.data(),
+                                                 error.size());
                      });
 }
 
@@ -84,12 +85,13 @@ void write_exr(const fs::path& path, const Measurement& measurement) {
 }
 
 Measurement read_image(const fs::path& path) {
-    const RopsimImageModule&     images = image_module();
+    const RopsimImageModule& images = image_module();
     std::array<char, error_size> error{};
-    std::uint32_t                channels = 0;
-    Measurement                  result;
+    std::uint32_t channels = 0;
+    Measurement result;
     const auto read = [&](float* pixels) {
-        if (images.read(path.c_str(), &result.width, &result.height, &channels, pixels, error.data(), error.size()) != 0)
+        if (images.read(path.c_str(), &result.width, &result.height, &channels, pixels, error.data(), error.size()) !=
+            0)
             throw sim::InputError(fmt::format("{}: cannot be read: {}", path.string(), error.data()));
     };
     read(nullptr);

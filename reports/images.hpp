@@ -15,21 +15,21 @@ namespace reports {
 using Colour = std::array<std::uint8_t, 3>;
 
 struct Picture {
-    std::uint32_t       width = 0, height = 0; ///< pixels
-    std::vector<Colour> pixels;                ///< row by row from the top
+    std::uint32_t width = 0, height = 0; ///< pixels
+    std::vector<Colour> pixels;          ///< row by row from the top
 
     Picture() = default;
     Picture(std::uint32_t columns, std::uint32_t rows, Colour colour = {0, 0, 0})
         : width(columns), height(rows), pixels(std::size_t{columns} * rows, colour) {}
-    Colour&       at(std::uint32_t x, std::uint32_t y) { return pixels[std::size_t{y} * width + x]; }
+    Colour& at(std::uint32_t x, std::uint32_t y) { return pixels[std::size_t{y} * width + x]; }
     const Colour& at(std::uint32_t x, std::uint32_t y) const { return pixels[std::size_t{y} * width + x]; }
 };
 
 /// Numbers per pixel, as the simulator computed them.
 struct Measurement {
-    std::uint32_t            width = 0, height = 0; ///< pixels
-    std::vector<std::string> channels;              ///< "R", "layer0.Z"; order as in `values`
-    std::vector<float>       values;                ///< width * height * channels, row by row from the top
+    std::uint32_t width = 0, height = 0; ///< pixels
+    std::vector<std::string> channels;   ///< "R", "layer0.Z"; order as in `values`
+    std::vector<float> values;           ///< width * height * channels, row by row from the top
 };
 
 /// Throws sim::InputError when pictures cannot be written here. Call it before a long run.

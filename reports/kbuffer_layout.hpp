@@ -12,8 +12,11 @@ namespace reports {
 class KBufferLayout {
   public:
     explicit KBufferLayout(const pipeline::ModifyProgram& program)
-        : layers_(program.k()), entry_floats_(program.floats_per_entry()), pixel_floats_(program.floats_per_pixel()),
-          depth_slot_(program.depth_slot()), colour_(program.needs_colour() && program.floats_per_entry() >= 4),
+        : layers_(program.k()),
+          entry_floats_(program.floats_per_entry()),
+          pixel_floats_(program.floats_per_pixel()),
+          depth_slot_(program.depth_slot()),
+          colour_(program.needs_colour() && program.floats_per_entry() >= 4),
           clear_(program.floats_per_pixel()) {
         program.clear(clear_.data());
     }
@@ -36,8 +39,8 @@ class KBufferLayout {
     }
 
   private:
-    std::uint32_t      layers_, entry_floats_, pixel_floats_, depth_slot_;
-    bool               colour_;
+    std::uint32_t layers_, entry_floats_, pixel_floats_, depth_slot_;
+    bool colour_;
     std::vector<float> clear_;
 };
 

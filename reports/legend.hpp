@@ -10,20 +10,20 @@ namespace reports {
 
 /// A sample of a colour and what it means.
 struct Swatch {
-    Colour      colour{};
+    Colour colour{};
     std::string text;
 };
 
 /// A number on a scale; `position` in [0, 1].
 struct Tick {
-    double      position = 0;
+    double position = 0;
     std::string text;
 };
 
 struct Legend {
-    std::string         title;
+    std::string title;
     Colour (*ramp)(double position) = nullptr; ///< drawn as a bar when given
-    std::vector<Tick>   ticks;                 ///< below the bar
+    std::vector<Tick> ticks;                   ///< below the bar
     std::vector<Swatch> swatches;              ///< one a line
 };
 

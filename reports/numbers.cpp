@@ -26,14 +26,14 @@ std::string short_number(double number) {
     if (!std::isfinite(number)) return "-";
     if (number < 10000) return number == std::floor(number) ? fmt::format("{:.0f}", number) : three_digits(number);
     constexpr std::array<const char*, 4> letters{"k", "M", "G", "T"};
-    std::size_t                          letter = 0;
+    std::size_t letter = 0;
     for (number /= 1000; number >= 999.5 && letter + 1 < letters.size(); ++letter) number /= 1000;
     return three_digits(number) + letters[letter];
 }
 
 std::string bytes_text(double bytes) {
     constexpr std::array<const char*, 5> units{"B", "kB", "MB", "GB", "TB"};
-    std::size_t                          unit = 0;
+    std::size_t unit = 0;
     for (; bytes >= 999.5 && unit + 1 < units.size(); ++unit) bytes /= 1000;
     return unit == 0 ? fmt::format("{:.0f} B", bytes) : fmt::format("{} {}", three_digits(bytes), units[unit]);
 }

@@ -26,7 +26,8 @@ class PictureWriter {
     }
 
     void add_overlap() {
-        add_png("overlap.png", "", "fragments per pixel", [this] { return overlap_picture(size_, comparison_.depth_complexity); });
+        add_png("overlap.png", "", "fragments per pixel",
+                [this] { return overlap_picture(size_, comparison_.depth_complexity); });
         add_exr("overlap.exr", [this] {
             const auto& counts = comparison_.depth_complexity;
             return Measurement{size_.width, size_.height, {"fragments"}, {counts.begin(), counts.end()}};
@@ -82,8 +83,7 @@ class PictureWriter {
     }
 
   private:
-    void add_png(const fs::path& file, const std::string& subject, std::string title,
-                 std::function<Picture()> make) {
+    void add_png(const fs::path& file, const std::string& subject, std::string title, std::function<Picture()> make) {
         files_.push_back({file, subject, std::move(title)});
         jobs_.emplace_back([path = directory_ / file, make = std::move(make)] { write_png(path, make()); });
     }
@@ -112,12 +112,12 @@ class PictureWriter {
         return fmt::format("value{}", slot);
     }
 
-    const Comparison&                  comparison_;
-    fs::path                           directory_;
-    Size                               size_;
-    std::optional<KBufferLayout>       layout_;
-    DepthRange                         range_;
-    std::vector<PictureFile>           files_;
+    const Comparison& comparison_;
+    fs::path directory_;
+    Size size_;
+    std::optional<KBufferLayout> layout_;
+    DepthRange range_;
+    std::vector<PictureFile> files_;
     std::vector<std::function<void()>> jobs_;
 };
 
@@ -130,7 +130,7 @@ bool is_numbered_png(const fs::path& path, std::string_view prefix) {
 
 // Pictures of an earlier comparison that this one may not have: another factor, more layers.
 void remove_earlier(const fs::path& directory) {
-    std::error_code       ignored;
+    std::error_code ignored;
     std::vector<fs::path> earlier;
     for (const auto& entry : fs::directory_iterator(directory, ignored))
         if (is_numbered_png(entry.path(), "difference_x") || is_numbered_png(entry.path(), "layer"))

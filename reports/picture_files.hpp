@@ -4,8 +4,8 @@
 //   reference/  composite, layers         in submission order, without time
 //   DESIGN/     composite, layers, hazards, difference to the reference
 //
-// PNG is for looking (sRGB; legends below the picture), EXR for measuring (linear, no legends): composite.exr with R, G,
-// B, A; layers.exr with layer0.R ... layer0.Z, or layer0.Z alone; overlap.exr with "fragments".
+// PNG is for looking (sRGB; legends below the picture), EXR for measuring (linear, no legends): composite.exr with R,
+// G, B, A; layers.exr with layer0.R ... layer0.Z, or layer0.Z alone; overlap.exr with "fragments".
 #pragma once
 
 #include "reports/comparison_result.hpp"
@@ -18,10 +18,10 @@
 namespace reports {
 
 struct PictureFile {
-    std::filesystem::path file;    ///< relative to the folder of the report
-    std::string           subject; ///< design, "reference", or "" for what concerns all
-    std::string           title;   ///< one line
-    bool                  layer = false;
+    std::filesystem::path file; ///< relative to the folder of the report
+    std::string subject;        ///< design, "reference", or "" for what concerns all
+    std::string title;          ///< one line
+    bool layer = false;
 };
 
 /// Writes all pictures below `directory` and returns the PNG files, in the order in which a report shows them. Throws

@@ -20,14 +20,14 @@ constexpr Colour kbuffer_only{24, 140, 132};
 Colour dimmed(std::span<const float> rgba, std::size_t pixel) {
     // Rec. 709 luminance; a fifth of the light leaves half of the displayed brightness.
     const float* linear = &rgba[4 * pixel];
-    const float  grey   = 0.2F * (0.2126F * linear[0] + 0.7152F * linear[1] + 0.0722F * linear[2]);
+    const float grey = 0.2F * (0.2126F * linear[0] + 0.7152F * linear[1] + 0.0722F * linear[2]);
     return encode_srgb(grey, grey, grey);
 }
 
 Legend depth_legend(std::uint32_t layer, DepthRange range) {
     Legend legend;
     legend.title = fmt::format("Layer {}: window depth", layer);
-    legend.ramp  = depth_shade;
+    legend.ramp = depth_shade;
     for (const double at : {0.0, 0.25, 0.5, 0.75, 1.0})
         legend.ticks.push_back({at, fmt::format("{:.5g}", range.near + at * (range.far - range.near))});
     legend.swatches.push_back({empty_colour(0, 0), "chequered: no entry"});
@@ -37,11 +37,11 @@ Legend depth_legend(std::uint32_t layer, DepthRange range) {
 Picture colour_layer(Size size, const KBufferLayout& layout, std::span<const float> kbuffer, std::uint32_t layer) {
     Picture picture(size.width, size.height);
     for (std::size_t pixel = 0; pixel < size.pixels(); ++pixel) {
-        const auto entry      = layout.entry(kbuffer, pixel, layer);
-        const auto x          = static_cast<std::uint32_t>(pixel % size.width);
-        const auto y          = static_cast<std::uint32_t>(pixel / size.width);
-        picture.pixels[pixel] = layout.is_empty(kbuffer, pixel, layer) ? empty_colour(x, y)
-                                                                       : encode_srgb(entry[0], entry[1], entry[2]);
+        const auto entry = layout.entry(kbuffer, pixel, layer);
+        const auto x = static_cast<std::uint32_t>(pixel % size.width);
+        const auto y = static_cast<std::uint32_t>(pixel / size.width);
+        picture.pixels[pixel] =
+            layout.is_empty(kbuffer, pixel, layer) ? empty_colour(x, y) : encode_srgb(entry[0], entry[1], entry[2]);
     }
     return picture;
 }
@@ -49,10 +49,10 @@ Picture colour_layer(Size size, const KBufferLayout& layout, std::span<const flo
 Picture depth_layer(Size size, const KBufferLayout& layout, std::span<const float> kbuffer, std::uint32_t layer,
                     DepthRange range) {
     const double extent = std::max(range.far - range.near, 1e-30F);
-    Picture      picture(size.width, size.height);
+    Picture picture(size.width, size.height);
     for (std::size_t pixel = 0; pixel < size.pixels(); ++pixel) {
-        const auto   x = static_cast<std::uint32_t>(pixel % size.width);
-        const auto   y = static_cast<std::uint32_t>(pixel / size.width);
+        const auto x = static_cast<std::uint32_t>(pixel % size.width);
+        const auto y = static_cast<std::uint32_t>(pixel / size.width);
         const double z = layout.depth(kbuffer, pixel, layer);
         picture.pixels[pixel] =
             layout.is_empty(kbuffer, pixel, layer) ? empty_colour(x, y) : depth_shade((z - range.near) / extent);
@@ -78,22 +78,21 @@ Colour difference_heat(double position) { return heat(position <= 0.0 ? 0.0 : 0.
 Legend difference_legend(std::uint32_t factor, std::size_t differing, std::size_t wrong, const std::string& design) {
     Legend legend;
     legend.title = fmt::format("{}: difference x {}, {} px", design, factor, with_commas(differing));
-    legend.ramp  = difference_heat;
+    legend.ramp = difference_heat;
     for (const double at : {0.0, 0.25, 0.5, 0.75, 1.0})
         legend.ticks.push_back({at, fmt::format("{}{:.3g}", at == 1.0 ? ">=" : "", at / factor)});
-    if (wrong > 0)
-        legend.swatches.push_back({kbuffer_only, fmt::format("k-buffer only: {} px", with_commas(wrong))});
+    if (wrong > 0) legend.swatches.push_back({kbuffer_only, fmt::format("k-buffer only: {} px", with_commas(wrong))});
     return legend;
 }
 
 struct Complexity {
     std::uint64_t covered = 0, fragments = 0;
     std::uint32_t highest = 0;
-    std::uint32_t shown   = 1; ///< number at the end of the scale
+    std::uint32_t shown = 1; ///< number at the end of the scale
 };
 
 Complexity complexity_of(std::span<const std::uint32_t> counts) {
-    Complexity                 result;
+    Complexity result;
     std::vector<std::uint32_t> covered;
     for (const std::uint32_t count : counts)
         if (count > 0) covered.push_back(count);
@@ -105,23 +104,23 @@ Complexity complexity_of(std::span<const std::uint32_t> counts) {
     std::nth_element(covered.begin(), covered.begin() + rank, covered.end());
     // A few very deep pixels must not darken all others.
     const std::uint32_t usual = covered[static_cast<std::size_t>(rank)];
-    result.shown              = result.highest > 2 * usual ? usual : result.highest;
+    result.shown = result.highest > 2 * usual ? usual : result.highest;
     return result;
 }
 
 Legend overlap_legend(const Complexity& complexity) {
-    const double mean = complexity.covered == 0 ? 0.0
-                                                : static_cast<double>(complexity.fragments) /
-                                                      static_cast<double>(complexity.covered);
+    const double mean = complexity.covered == 0
+                            ? 0.0
+                            : static_cast<double>(complexity.fragments) / static_cast<double>(complexity.covered);
     Legend legend;
     legend.title = fmt::format("Fragments per pixel: mean {:.2f}, max {}", mean, complexity.highest);
-    legend.ramp  = heat;
+    legend.ramp = heat;
     const std::uint32_t steps = std::min(complexity.shown, 6U);
     for (std::uint32_t step = 0; step <= steps; ++step) {
         const std::uint32_t number = complexity.shown * step / steps;
-        const bool          cut    = step == steps && complexity.shown < complexity.highest;
-        legend.ticks.push_back({static_cast<double>(number) / complexity.shown,
-                                fmt::format("{}{}", cut ? ">=" : "", number)});
+        const bool cut = step == steps && complexity.shown < complexity.highest;
+        legend.ticks.push_back(
+            {static_cast<double>(number) / complexity.shown, fmt::format("{}{}", cut ? ">=" : "", number)});
     }
     return legend;
 }
@@ -144,7 +143,7 @@ DepthRange depth_range(const KBufferLayout& layout, std::span<const float> kbuff
         for (std::uint32_t layer = 0; layer < layout.layers(); ++layer)
             if (!layout.is_empty(kbuffer, pixel, layer)) {
                 const float z = layout.depth(kbuffer, pixel, layer);
-                range         = {std::min(range.near, z), std::max(range.far, z)};
+                range = {std::min(range.near, z), std::max(range.far, z)};
             }
     return range.near > range.far ? DepthRange{} : range;
 }
@@ -161,8 +160,9 @@ Picture hazard_picture(Size size, std::span<const float> rgba, std::span<const s
     Picture picture(size.width, size.height);
     for (std::size_t pixel = 0; pixel < size.pixels(); ++pixel) {
         const unsigned classes = mask.empty() ? 0U : mask[pixel];
-        picture.pixels[pixel]  = classes == 0 ? dimmed(rgba, pixel)
-                                              : hazard_colours[static_cast<std::size_t>(std::bit_width(classes & 15U)) - 1];
+        picture.pixels[pixel] = classes == 0
+                                    ? dimmed(rgba, pixel)
+                                    : hazard_colours[static_cast<std::size_t>(std::bit_width(classes & 15U)) - 1];
     }
     return with_legend(picture, hazard_legend(counts, design));
 }
@@ -187,8 +187,8 @@ std::uint32_t DifferenceScale::factor() const {
     for (const std::uint64_t count : counts_) total += count;
     if (total == 0) return 1;
     // Differences in bin i, times 2^i, are at most 1.
-    std::uint64_t  larger = 0;
-    std::uint32_t  factor = 1;
+    std::uint64_t larger = 0;
+    std::uint32_t factor = 1;
     for (std::size_t bin = 0; bin + 2 < bins && 100 * (larger + counts_[bin]) <= total; ++bin) {
         larger += counts_[bin];
         factor *= 2;
@@ -198,12 +198,12 @@ std::uint32_t DifferenceScale::factor() const {
 
 Picture difference_picture(Size size, std::span<const float> rgba, std::span<const float> reference,
                            std::span<const std::uint8_t> wrong, std::uint32_t factor, const std::string& design) {
-    Picture     picture(size.width, size.height);
+    Picture picture(size.width, size.height);
     std::size_t differing = 0, only_stored = 0;
     for (std::size_t pixel = 0; pixel < size.pixels(); ++pixel) {
         const double difference = pixel_difference(rgba, reference, pixel);
-        const bool   stored     = difference == 0 && !wrong.empty() && wrong[pixel] != 0;
-        picture.pixels[pixel]   = stored ? kbuffer_only : difference_heat(difference * factor);
+        const bool stored = difference == 0 && !wrong.empty() && wrong[pixel] != 0;
+        picture.pixels[pixel] = stored ? kbuffer_only : difference_heat(difference * factor);
         differing += difference > 0;
         only_stored += stored;
     }
@@ -213,7 +213,7 @@ Picture difference_picture(Size size, std::span<const float> rgba, std::span<con
 Picture overlap_picture(Size size, std::span<const std::uint32_t> depth_complexity) {
     CHECK(depth_complexity.size() == size.pixels());
     const Complexity complexity = complexity_of(depth_complexity);
-    Picture          picture(size.width, size.height);
+    Picture picture(size.width, size.height);
     for (std::size_t pixel = 0; pixel < size.pixels(); ++pixel)
         picture.pixels[pixel] = heat(static_cast<double>(depth_complexity[pixel]) / complexity.shown);
     return with_legend(picture, overlap_legend(complexity));

@@ -13,7 +13,7 @@ namespace reports {
 
 struct Size {
     std::uint32_t width = 0, height = 0; ///< pixels
-    std::size_t   pixels() const { return std::size_t{width} * height; }
+    std::size_t pixels() const { return std::size_t{width} * height; }
 };
 
 /// Linear RGBA, four floats a pixel, encoded for a display; alpha is not shown.
@@ -34,7 +34,7 @@ Picture layer_picture(Size size, const KBufferLayout& layout, std::span<const fl
 /// legend below. Where several classes happened the highest is shown. `mask` may be empty: no hazards.
 Picture hazard_picture(Size size, std::span<const float> rgba, std::span<const std::uint8_t> mask,
                        const pipeline::HazardCounts& counts, const std::string& design);
-Colour  hazard_colour(std::size_t kind); ///< kind 0 to 3
+Colour hazard_colour(std::size_t kind); ///< kind 0 to 3
 
 /// The largest difference of a pixel's red, green or blue (linear light), 0 to 1.
 float pixel_difference(std::span<const float> rgba, std::span<const float> reference, std::size_t pixel);
@@ -42,12 +42,12 @@ float pixel_difference(std::span<const float> rgba, std::span<const float> refer
 /// The power of two in [1, 256] that brings 99 of 100 differing pixels of all runs up to at most 1; 1 without any.
 class DifferenceScale {
   public:
-    void          note(Size size, std::span<const float> rgba, std::span<const float> reference);
+    void note(Size size, std::span<const float> rgba, std::span<const float> reference);
     std::uint32_t factor() const;
 
   private:
-    static constexpr std::size_t            bins = 10;
-    std::array<std::uint64_t, bins>         counts_{}; ///< bin i: difference in (2^-(i+1), 2^-i]
+    static constexpr std::size_t bins = 10;
+    std::array<std::uint64_t, bins> counts_{}; ///< bin i: difference in (2^-(i+1), 2^-i]
 };
 
 /// Differences to the reference times `factor`, as heat, with a scale below. Pixels of `wrong` (may be empty) whose

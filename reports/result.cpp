@@ -13,20 +13,14 @@ using nlohmann::ordered_json;
 namespace {
 
 ordered_json scene_json(const Comparison& comparison) {
-    const SceneFacts&      scene = comparison.scene;
+    const SceneFacts& scene = comparison.scene;
     const pipeline::Frame& frame = *comparison.frame;
-    ordered_json           json  = {{"name", scene.name},
-                                    {"hash", scene.hash},
-                                    {"triangles", scene.triangles},
-                                    {"triangles_drawn", scene.triangles_drawn},
-                                    {"vertices", scene.vertices},
-                                    {"draws", scene.draws},
-                                    {"textures", scene.textures},
-                                    {"camera", scene.camera},
-                                    {"width", comparison.width()},
-                                    {"height", comparison.height()},
-                                    {"workload", frame.workload},
-                                    {"notes", scene.notes}};
+    ordered_json json = {{"name", scene.name},           {"hash", scene.hash},
+                         {"triangles", scene.triangles}, {"triangles_drawn", scene.triangles_drawn},
+                         {"vertices", scene.vertices},   {"draws", scene.draws},
+                         {"textures", scene.textures},   {"camera", scene.camera},
+                         {"width", comparison.width()},  {"height", comparison.height()},
+                         {"workload", frame.workload},   {"notes", scene.notes}};
     if (frame.program)
         json["kbuffer"] = {{"program", frame.program->id()},
                            {"k", frame.program->k()},
@@ -46,7 +40,7 @@ ordered_json gpu_json(const GpuFacts& gpu) {
 
 // Rates are over the time of the runs themselves, so that they do not depend on how many ran at once.
 ordered_json host_json(const Comparison& comparison) {
-    double       seconds = 0, cycles = 0, fragments = 0;
+    double seconds = 0, cycles = 0, fragments = 0;
     ordered_json runs = ordered_json::array();
     for (const pipeline::RunResult& run : comparison.runs) {
         seconds += run.host_seconds;
@@ -70,7 +64,7 @@ ordered_json left_out_json(const std::vector<std::pair<std::string, std::string>
     return list;
 }
 
-ordered_json needs_json(const std::vector<std::string>&                         built,
+ordered_json needs_json(const std::vector<std::string>& built,
                         const std::vector<std::pair<std::string, std::string>>& left_out) {
     return {{"built", built}, {"left_out", left_out_json(left_out)}};
 }
@@ -129,7 +123,8 @@ ordered_json draws_json(const pipeline::RunResult& run) {
 
 // What every run has, in the order of the first.
 template <class T>
-std::vector<T> common_to_all(const std::vector<pipeline::RunResult>& runs, std::vector<T> pipeline::RunResult::*member) {
+std::vector<T> common_to_all(const std::vector<pipeline::RunResult>& runs,
+                             std::vector<T> pipeline::RunResult::*member) {
     std::vector<T> common;
     for (const T& item : runs.front().*member) {
         const auto has = [&](const pipeline::RunResult& run) {
@@ -141,7 +136,7 @@ std::vector<T> common_to_all(const std::vector<pipeline::RunResult>& runs, std::
 }
 
 struct Needs {
-    std::vector<std::string>                         built;
+    std::vector<std::string> built;
     std::vector<std::pair<std::string, std::string>> left_out;
 };
 
@@ -167,7 +162,8 @@ ordered_json design_json(const pipeline::RunResult& run, const Needs& common) {
                          {"passes", passes_json(run)},
                          {"draws", draws_json(run)}};
     // The comparison's "needs" states what all designs have in common.
-    if (run.built != common.built || run.left_out != common.left_out) json["needs"] = needs_json(run.built, run.left_out);
+    if (run.built != common.built || run.left_out != common.left_out)
+        json["needs"] = needs_json(run.built, run.left_out);
     return json;
 }
 

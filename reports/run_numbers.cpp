@@ -11,9 +11,8 @@ double frames_per_second(const pipeline::RunResult& run) {
 }
 
 double hazards_per_million(const pipeline::RunResult& run) {
-    return run.fragments == 0
-               ? 0.0
-               : 1e6 * static_cast<double>(run.hazards.total()) / static_cast<double>(run.fragments);
+    return run.fragments == 0 ? 0.0
+                              : 1e6 * static_cast<double>(run.hazards.total()) / static_cast<double>(run.fragments);
 }
 
 double cycles_per_second(const pipeline::RunResult& run) {

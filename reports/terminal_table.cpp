@@ -17,7 +17,7 @@ enum class Emphasis : std::uint8_t { none, bad, good };
 
 struct Cell {
     std::string text;
-    Emphasis    emphasis = Emphasis::none;
+    Emphasis emphasis = Emphasis::none;
 };
 using Row = std::vector<Cell>;
 
@@ -124,7 +124,7 @@ std::string header_of(const Widths& widths, bool colour) {
 // "reason" -> who lacks the unit, in the order of the designs.
 struct LeftOutEntry {
     std::pair<std::string, std::string> what;
-    std::vector<std::string>            designs;
+    std::vector<std::string> designs;
 };
 
 std::vector<LeftOutEntry> left_out_entries(const Comparison& comparison) {
@@ -146,7 +146,7 @@ std::vector<LeftOutEntry> left_out_entries(const Comparison& comparison) {
 std::string wrap(const std::string& text, std::size_t columns_allowed, std::size_t indent) {
     std::string result, line;
     for (std::size_t begin = 0; begin < text.size();) {
-        const std::size_t end  = std::min(text.find(' ', begin), text.size());
+        const std::size_t end = std::min(text.find(' ', begin), text.size());
         const std::string word = text.substr(begin, end - begin);
         if (!line.empty() && line.size() + 1 + word.size() > columns_allowed) {
             result += line + "\n";
@@ -172,7 +172,7 @@ std::string heading(const Comparison& comparison, TerminalStyle style) {
 
 std::string designs_text(const Comparison& comparison, TerminalStyle style) {
     std::vector<Row> rows;
-    Widths           widths{};
+    Widths widths{};
     for (const bool exact : {true, false}) {
         rows.clear();
         for (const RunResult& run : comparison.runs) rows.push_back(row_of(run, comparison.runs.front(), exact));
@@ -185,14 +185,13 @@ std::string designs_text(const Comparison& comparison, TerminalStyle style) {
 }
 
 std::string left_out_text(const Comparison& comparison, TerminalStyle style) {
-    const auto  entries = left_out_entries(comparison);
-    std::string text    = entries.empty() ? "Nothing was left out.\n" : "Left out:\n";
-    std::size_t widest  = 0;
+    const auto entries = left_out_entries(comparison);
+    std::string text = entries.empty() ? "Nothing was left out.\n" : "Left out:\n";
+    std::size_t widest = 0;
     for (const LeftOutEntry& entry : entries) widest = std::max(widest, entry.what.first.size());
     for (const LeftOutEntry& entry : entries) {
         std::string line = fmt::format("  {:<{}}  {}", entry.what.first, widest, entry.what.second);
-        if (entry.designs.size() < comparison.runs.size())
-            line += fmt::format(" ({})", fmt::join(entry.designs, ", "));
+        if (entry.designs.size() < comparison.runs.size()) line += fmt::format(" ({})", fmt::join(entry.designs, ", "));
         text += wrap(line, style.columns, widest + 4);
     }
     return text;

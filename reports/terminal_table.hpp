@@ -8,8 +8,8 @@
 namespace reports {
 
 struct TerminalStyle {
-    bool        colour  = false; ///< ANSI colours
-    std::size_t columns = 120;   ///< characters a line may have
+    bool colour = false;       ///< ANSI colours
+    std::size_t columns = 120; ///< characters a line may have
 };
 
 /// One line on what was drawn on what.

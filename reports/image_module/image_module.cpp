@@ -64,8 +64,8 @@ int read(const char* path, std::uint32_t* width, std::uint32_t* height, std::uin
     try {
         const auto input = OIIO::ImageInput::open(path);
         if (!input) return fail(OIIO::geterror(), error, size);
-        *width    = static_cast<std::uint32_t>(input->spec().width);
-        *height   = static_cast<std::uint32_t>(input->spec().height);
+        *width = static_cast<std::uint32_t>(input->spec().width);
+        *height = static_cast<std::uint32_t>(input->spec().height);
         *channels = static_cast<std::uint32_t>(input->spec().nchannels);
         if (pixels == nullptr || input->read_image(0, 0, 0, -1, OIIO::TypeDesc::FLOAT, pixels)) return 0;
         return fail(input->geterror(), error, size);

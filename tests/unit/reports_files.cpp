@@ -1,0 +1,93 @@
+// A file appears complete or not at all, and a failure is one line that names it.
+#include "reports/atomic_file.hpp"
+#include "sim/check.hpp"
+#include "tests/support/program_run.hpp"
+
+#include <csignal>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+namespace {
+
+using ropsim_test::TemporaryFolder;
+
+std::string message_of(const std::function<void()>& action) {
+    try {
+        action();
+    } catch (const sim::InputError& error) {
+        return error.what();
+    }
+    return "nothing was thrown";
+}
+
+/// Files of this process may have at most `bytes` while this lives: like a full disk.
+class FileSizeLimit {
+  public:
+    explicit FileSizeLimit(rlim_t bytes) {
+        ::getrlimit(RLIMIT_FSIZE, &before_);
+        const rlimit limit{bytes, before_.rlim_max};
+        ::setrlimit(RLIMIT_FSIZE, &limit);
+        handler_ = std::signal(SIGXFSZ, SIG_IGN);
+    }
+    ~FileSizeLimit() {
+        ::setrlimit(RLIMIT_FSIZE, &before_);
+        std::signal(SIGXFSZ, handler_);
+    }
+
+  private:
+    rlimit before_{};
+    void (*handler_)(int) = nullptr;
+};
+
+TEST(ReportsFiles, WritesAndReplaces) {
+    const TemporaryFolder folder;
+    reports::write_file(folder.path() / "a.txt", "one");
+    reports::write_file(folder.path() / "a.txt", "two");
+    EXPECT_EQ(ropsim_test::file_text(folder.path() / "a.txt"), "two");
+    EXPECT_EQ(folder.files(), std::vector<std::string>{"a.txt"});
+}
+
+TEST(ReportsFiles, WithoutCommitNothingStays) {
+    const TemporaryFolder folder;
+    {
+        const reports::AtomicFile file(folder.path() / "a.txt");
+        std::ofstream(file.temporary()) << "half";
+        EXPECT_EQ(folder.files().size(), 1U);
+    }
+    EXPECT_EQ(folder.files().size(), 0U);
+}
+
+TEST(ReportsFiles, FullDiskLeavesTheOldFileAndNothingElse) {
+    const TemporaryFolder folder;
+    const auto path = folder.path() / "a.txt";
+    reports::write_file(path, "old");
+    const FileSizeLimit limit(1000);
+    const std::string message = message_of([&] { reports::write_file(path, std::string(5000, 'x')); });
+    EXPECT_EQ(message, path.string() + ": cannot be written: File too large");
+    EXPECT_EQ(ropsim_test::file_text(path), "old");
+    EXPECT_EQ(folder.files(), std::vector<std::string>{"a.txt"});
+}
+
+TEST(ReportsFiles, MissingFolderIsNamed) {
+    const std::string message = message_of([] { reports::write_file("/nonexistent/a.txt", "x"); });
+    EXPECT_EQ(message, "/nonexistent/a.txt: cannot be written: No such file or directory");
+}
+
+TEST(ReportsFiles, FolderIsMadeWithItsParents) {
+    const TemporaryFolder folder;
+    reports::make_directory(folder.path() / "a" / "b");
+    EXPECT_TRUE(std::filesystem::is_directory(folder.path() / "a" / "b"));
+    EXPECT_EQ(folder.files().size(), 0U);
+}
+
+TEST(ReportsFiles, FileInTheWayOfAFolderIsNamed) {
+    const TemporaryFolder folder;
+    const auto path = folder.path() / "a";
+    reports::write_file(path, "x");
+    const std::string message = message_of([&] { reports::make_directory(path); });
+    EXPECT_EQ(message.substr(0, path.string().size() + 2), path.string() + ": ");
+    EXPECT_EQ(message.find('\n'), std::string::npos);
+}
+
+} // namespace

@@ -1,0 +1,95 @@
+#include "pipeline/functional/clip.hpp"
+
+#include "sim/check.hpp"
+
+#include <algorithm>
+
+namespace pipeline {
+
+namespace {
+
+/// A plane of the clip volume: inside where sign * coordinate <= reach * w.
+struct Plane {
+    std::uint32_t bit;
+    int axis;
+    double sign;
+    double reach;
+
+    double distance(const glm::dvec4& clip) const { return reach * clip.w - sign * clip[axis]; }
+
+    /// Rounding must not leave the new corner off the plane.
+    void settle(glm::dvec4& clip) const { clip[axis] = sign * reach * clip.w; }
+};
+
+ClippedCorner cut(const Plane& plane, const ClippedCorner& inner, double inner_distance, const ClippedCorner& outer,
+                  double outer_distance) {
+    const double t = inner_distance / (inner_distance - outer_distance);
+    ClippedCorner result;
+    result.clip = inner.clip + t * (outer.clip - inner.clip);
+    result.weights = inner.weights + t * (outer.weights - inner.weights);
+    plane.settle(result.clip);
+    return result;
+}
+
+ClippedPolygon clip_polygon(const Plane& plane, const ClippedPolygon& polygon) {
+    ClippedPolygon result;
+    const auto add = [&](const ClippedCorner& corner) {
+        CHECK(result.count < result.corners.size());
+        result.corners[result.count++] = corner;
+    };
+    for (std::uint32_t i = 0; i < polygon.count; ++i) {
+        const ClippedCorner& here = polygon.corners[i];
+        const ClippedCorner& next = polygon.corners[i + 1 < polygon.count ? i + 1 : 0];
+        const double here_distance = plane.distance(here.clip);
+        const double next_distance = plane.distance(next.clip);
+        const bool here_inside = here_distance >= 0.0;
+        const bool next_inside = next_distance >= 0.0;
+        if (here_inside) add(here);
+        if (here_inside && !next_inside) add(cut(plane, here, here_distance, next, next_distance));
+        if (!here_inside && next_inside) add(cut(plane, next, next_distance, here, here_distance));
+    }
+    if (result.count < 3) result.count = 0;
+    return result;
+}
+
+} // namespace
+
+ClippedPolygon clip_triangle(const Viewport& viewport, const std::array<const ScreenVertex*, 3>& triangle) {
+    ClippedPolygon polygon;
+    polygon.count = 3;
+    std::uint32_t crossed = 0;
+    for (std::uint32_t i = 0; i < 3; ++i) {
+        polygon.corners[i].clip = glm::dvec4(triangle[i]->clip);
+        polygon.corners[i].weights = glm::dvec3(0.0);
+        polygon.corners[i].weights[static_cast<glm::length_t>(i)] = 1.0;
+        crossed |= triangle[i]->outside;
+    }
+    const auto guard_x = static_cast<double>(viewport.guard_x());
+    const auto guard_y = static_cast<double>(viewport.guard_y());
+    const std::array<Plane, 6> planes{{{outside::near, 2, -1.0, 1.0},
+                                       {outside::far, 2, 1.0, 1.0},
+                                       {outside::guard_left, 0, -1.0, guard_x},
+                                       {outside::guard_right, 0, 1.0, guard_x},
+                                       {outside::guard_bottom, 1, -1.0, guard_y},
+                                       {outside::guard_top, 1, 1.0, guard_y}}};
+    for (const Plane& plane : planes)
+        if ((crossed & plane.bit) != 0 && polygon.count != 0) polygon = clip_polygon(plane, polygon);
+    return polygon;
+}
+
+ScreenVertex screen_vertex(const Viewport& viewport, const ClippedCorner& corner) {
+    ScreenVertex vertex;
+    vertex.clip = glm::vec4(corner.clip);
+    vertex.clip.w = std::max(vertex.clip.w, smallest_w);
+    // A little farther than the guard band, so that corners that were not cut stay what they are.
+    const float w = vertex.clip.w;
+    const float reach_x = viewport.guard_x() * w * 1.0001F;
+    const float reach_y = viewport.guard_y() * w * 1.0001F;
+    vertex.clip.x = std::clamp(vertex.clip.x, -reach_x, reach_x);
+    vertex.clip.y = std::clamp(vertex.clip.y, -reach_y, reach_y);
+    vertex.clip.z = std::clamp(vertex.clip.z, -w, w);
+    viewport.project(vertex);
+    return vertex;
+}
+
+} // namespace pipeline

@@ -1,0 +1,105 @@
+#include "pipeline/functional/composite.hpp"
+
+#include "sim/check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/glm.hpp>
+
+namespace pipeline {
+
+namespace {
+
+/// A brightness for a window depth.
+class GreyRamp {
+  public:
+    explicit GreyRamp(const glm::mat4& projection) {
+        // z_ndc = (a z + b) / (-z) for a perspective projection, with z the eye-space depth (negative in front).
+        const double a = static_cast<double>(projection[2][2]), b = static_cast<double>(projection[3][2]);
+        if (projection[2][3] != -1.0F) return;
+        const double near = b / (a - 1.0), far = b / (a + 1.0);
+        if (!(near > 0.0 && far > near && std::isfinite(far))) return;
+        perspective_ = true;
+        near_ = near;
+        range_ = std::log(far / near);
+        a_ = a;
+        b_ = b;
+    }
+
+    float operator()(float depth) const {
+        double share = static_cast<double>(std::clamp(depth, 0.0F, 1.0F));
+        if (perspective_) share = std::log(b_ / (a_ + (2.0 * share - 1.0)) / near_) / range_;
+        return static_cast<float>(0.9 - 0.8 * std::clamp(share, 0.0, 1.0));
+    }
+
+  private:
+    bool perspective_ = false;
+    double near_ = 1.0, range_ = 1.0, a_ = 0.0, b_ = 0.0;
+};
+
+class Compositor {
+  public:
+    explicit Compositor(const Frame& frame)
+        : program_(*frame.program),
+          opacity_(frame.opacity),
+          ramp_(frame.view.projection),
+          cleared_(program_.floats_per_pixel()),
+          floats_(program_.floats_per_entry()),
+          slot_(program_.depth_slot()) {
+        program_.clear(cleared_.data());
+    }
+
+    glm::vec3 operator()(const float* pixel, glm::vec3 background) const {
+        glm::vec3 colour(0.0F);
+        float transmitted = 1.0F;
+        for (std::uint32_t i = 0; i < program_.k(); ++i) {
+            const float* entry = pixel + std::size_t{i} * floats_;
+            if (entry[slot_] == cleared_[std::size_t{i} * floats_ + slot_]) continue;
+            colour += transmitted * opacity_ * colour_of(entry);
+            transmitted *= 1.0F - opacity_;
+        }
+        return colour + transmitted * background;
+    }
+
+  private:
+    glm::vec3 colour_of(const float* entry) const {
+        if (floats_ != 4) return glm::vec3(ramp_(entry[slot_]));
+        glm::vec3 colour;
+        int channel = 0;
+        for (std::uint32_t i = 0; i < 4; ++i)
+            if (i != slot_) colour[channel++] = entry[i];
+        return colour;
+    }
+
+    const ModifyProgram& program_;
+    float opacity_;
+    GreyRamp ramp_;
+    std::vector<float> cleared_;
+    std::uint32_t floats_, slot_;
+};
+
+} // namespace
+
+std::vector<float> composite(const Frame& frame, std::span<const float> kbuffer, std::span<const float> opaque_colour) {
+    CHECK(frame.program != nullptr);
+    const std::size_t pixels = std::size_t{frame.view.width} * frame.view.height;
+    const std::size_t floats = frame.program->floats_per_pixel();
+    CHECK(kbuffer.size() == pixels * floats);
+    CHECK(opaque_colour.empty() || opaque_colour.size() == pixels * 4);
+
+    const Compositor layers(frame);
+    std::vector<float> picture(pixels * 4);
+    for (std::size_t i = 0; i < pixels; ++i) {
+        const float* behind = opaque_colour.empty() ? nullptr : opaque_colour.data() + i * 4;
+        const glm::vec3 background =
+            behind == nullptr ? glm::vec3(frame.background) : glm::vec3(behind[0], behind[1], behind[2]);
+        const glm::vec3 colour = layers(kbuffer.data() + i * floats, background);
+        picture[i * 4 + 0] = colour.r;
+        picture[i * 4 + 1] = colour.g;
+        picture[i * 4 + 2] = colour.b;
+        picture[i * 4 + 3] = 1.0F;
+    }
+    return picture;
+}
+
+} // namespace pipeline

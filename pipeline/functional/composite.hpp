@@ -1,0 +1,20 @@
+// The picture of a k-buffer: its layers composited front to back (specification 004, A11; workload W2, pass 2).
+#pragma once
+
+#include "pipeline/frame.hpp"
+
+#include <span>
+#include <vector>
+
+namespace pipeline {
+
+/// RGBA floats per pixel (alpha 1) of `kbuffer`, which holds program->floats_per_pixel() floats per pixel, row 0 first:
+/// C += T * a * c_i and T *= 1 - a over the entries in stored order with a = frame.opacity, then C += T * background.
+///
+/// The background is `opaque_colour` (RGBA floats per pixel) or, where that is empty, frame.background. Entries that
+/// still have the depth they were cleared to are empty. Programs with four floats per entry give the layers' colours;
+/// depth-only programs get a grey ramp instead: 0.9 at the near plane to 0.1 at the far plane, linear in the logarithm
+/// of the distance (perspective) or in the distance (parallel projection).
+std::vector<float> composite(const Frame& frame, std::span<const float> kbuffer, std::span<const float> opaque_colour);
+
+} // namespace pipeline

@@ -1,0 +1,168 @@
+// The first two passes of the front end: vertices to the screen, primitives to quads.
+#include "pipeline/functional/front_end_passes.hpp"
+#include "pipeline/functional/parallel.hpp"
+#include "pipeline/functional/raster_triangle.hpp"
+#include "sim/check.hpp"
+
+#include <atomic>
+#include <bit>
+#include <limits>
+
+namespace pipeline {
+
+namespace {
+
+constexpr std::uint32_t vertices_per_piece = 8192;
+constexpr std::uint32_t primitives_per_piece = 2048;
+constexpr std::uint64_t largest_count = std::numeric_limits<std::uint32_t>::max();
+
+void cut_into_pieces(std::vector<PlannedPiece>& pieces, std::uint32_t instance, std::uint32_t count,
+                     std::uint32_t size) {
+    for (std::uint32_t first = 0; first < count; first += std::min(size, count - first))
+        pieces.push_back({instance, first, std::min(size, count - first)});
+}
+
+/// What a piece of primitives becomes. Numbers count from the piece's own first triangle and quad.
+struct CoveredPiece {
+    std::vector<Triangle> triangles;
+    std::vector<Quad> quads;
+    std::uint64_t fragments = 0;
+    std::uint32_t first_triangle = 0; ///< in the stream
+    QuadId first_quad = 0;            ///< in the stream
+};
+
+class Coverage {
+  public:
+    Coverage(const FrontEndPlan& plan, FragmentStream& stream, const PlannedPiece& piece, CoveredPiece& output)
+        : plan_(plan),
+          stream_(stream),
+          output_(output),
+          range_(stream.draws[piece.instance]),
+          instance_(plan.instances[piece.instance]),
+          read_(plan.resources, *instance_.geometry) {
+        output_.triangles.reserve(piece.count);
+        for (std::uint32_t i = 0; i < piece.count; ++i) cover(piece.first + i);
+    }
+
+  private:
+    void cover(std::uint32_t primitive) {
+        cull_and_clip(plan_.viewport, instance_.culling, plan_.corners(instance_, read_(primitive)), parts_);
+        Primitive& result = stream_.primitives[range_.first_primitive + primitive];
+        result.first_triangle = static_cast<std::uint32_t>(output_.triangles.size());
+        result.triangles = static_cast<std::uint8_t>(parts_.count);
+        result.fate = parts_.fate;
+        result.clipped = parts_.clipped;
+        for (std::uint32_t part = 0; part < parts_.count; ++part)
+            rasterize_part(range_.first_primitive + primitive, parts_.parts[part]);
+    }
+
+    void rasterize_part(std::uint32_t primitive, const PrimitivePart& part) {
+        const auto number = static_cast<std::uint32_t>(output_.triangles.size());
+        const std::size_t first = output_.quads.size();
+        const RasterTriangle raster = set_up(part.corners[0], part.corners[1], part.corners[2], plan_.viewport);
+        const std::uint32_t tiles = for_each_quad(raster, [&](std::int32_t x, std::int32_t y, unsigned mask) {
+            output_.quads.push_back({static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y), number,
+                                     static_cast<std::uint8_t>(mask), 0, 0});
+            output_.fragments += static_cast<unsigned>(std::popcount(mask));
+        });
+        output_.triangles.push_back({range_.draw, primitive, static_cast<QuadId>(first),
+                                     static_cast<std::uint32_t>(output_.quads.size() - first), tiles});
+    }
+
+    const FrontEndPlan& plan_;
+    FragmentStream& stream_;
+    CoveredPiece& output_;
+    const DrawRange& range_;
+    const PlannedInstance& instance_;
+    PrimitiveReader read_;
+    PrimitiveParts parts_;
+};
+
+void place(std::vector<CoveredPiece>& covered, FragmentStream& stream) {
+    std::uint64_t triangles = 0, quads = 0;
+    for (CoveredPiece& piece : covered) {
+        piece.first_triangle = static_cast<std::uint32_t>(triangles);
+        piece.first_quad = static_cast<QuadId>(quads);
+        triangles += piece.triangles.size();
+        quads += piece.quads.size();
+        stream.fragments += piece.fragments;
+        if (triangles > largest_count) throw sim::InputError("scene: expected at most 2^32 - 1 triangles in a pass");
+    }
+    stream.triangles.resize(triangles);
+    stream.quads.resize(quads);
+}
+
+/// Moves a piece to its place in the stream.
+void store(const PlannedPiece& piece, CoveredPiece& covered, FragmentStream& stream) {
+    Triangle* triangle = stream.triangles.data() + covered.first_triangle;
+    for (Triangle source : covered.triangles) {
+        source.first_quad += covered.first_quad;
+        *triangle++ = source;
+    }
+    Quad* quad = stream.quads.data() + covered.first_quad;
+    for (Quad source : covered.quads) {
+        source.triangle += covered.first_triangle;
+        *quad++ = source;
+    }
+    Primitive* primitive = stream.primitives.data() + stream.draws[piece.instance].first_primitive + piece.first;
+    for (std::uint32_t i = 0; i < piece.count; ++i) primitive[i].first_triangle += covered.first_triangle;
+    covered = CoveredPiece{};
+}
+
+void count_quads_of_draws(const std::vector<PlannedPiece>& pieces, const std::vector<CoveredPiece>& covered,
+                          FragmentStream& stream) {
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        DrawRange& range = stream.draws[pieces[i].instance];
+        if (pieces[i].first == 0) range.first_quad = covered[i].first_quad;
+        range.quads += static_cast<std::uint32_t>(covered[i].quads.size());
+    }
+    // Instances without primitives have no piece.
+    QuadId next = 0;
+    for (DrawRange& range : stream.draws) {
+        if (range.primitives == 0) range.first_quad = next;
+        next = range.first_quad + range.quads;
+    }
+}
+
+} // namespace
+
+void transform_pass(FrontEndPlan& plan) {
+    std::vector<PlannedPiece> pieces;
+    for (std::uint32_t i = 0; i < plan.instances.size(); ++i)
+        cut_into_pieces(pieces, i, plan.instances[i].used.end - plan.instances[i].used.first, vertices_per_piece);
+    plan.progress.begin_pass(pieces.size(), 0.05);
+    parallel_for(plan.options.threads, pieces.size(), [&](std::size_t i) {
+        plan.progress.begin_piece();
+        const PlannedPiece& piece = pieces[i];
+        const PlannedInstance& instance = plan.instances[piece.instance];
+        const glm::mat4 matrix = clip_matrix(plan.view, *instance.model);
+        const AttributeReader position(plan.resources, *instance.geometry->find(Semantic::position));
+        ScreenVertex* target = plan.vertices.data() + instance.first_vertex + piece.first;
+        for (std::uint32_t vertex = 0; vertex < piece.count; ++vertex)
+            target[vertex] =
+                transform_vertex(matrix, plan.viewport, position(instance.used.first + piece.first + vertex));
+        plan.progress.end_piece();
+    });
+}
+
+void coverage_pass(FrontEndPlan& plan, FragmentStream& stream) {
+    std::vector<PlannedPiece> pieces;
+    for (std::uint32_t i = 0; i < plan.instances.size(); ++i)
+        cut_into_pieces(pieces, i, stream.draws[i].primitives, primitives_per_piece);
+    plan.progress.begin_pass(pieces.size(), 0.4);
+    std::vector<CoveredPiece> covered(pieces.size());
+    std::atomic<std::uint64_t> quads{0};
+    parallel_for(plan.options.threads, pieces.size(), [&](std::size_t i) {
+        plan.progress.begin_piece();
+        const Coverage coverage(plan, stream, pieces[i], covered[i]);
+        if (quads.fetch_add(covered[i].quads.size()) + covered[i].quads.size() > largest_count)
+            throw sim::InputError(
+                "scene: expected at most 2^32 - 1 quads in a pass; a smaller picture or fewer draws have less");
+        plan.progress.end_piece();
+    });
+    place(covered, stream);
+    count_quads_of_draws(pieces, covered, stream);
+    parallel_for(plan.options.threads, pieces.size(), [&](std::size_t i) { store(pieces[i], covered[i], stream); });
+}
+
+} // namespace pipeline

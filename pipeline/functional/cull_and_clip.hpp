@@ -1,0 +1,42 @@
+// From a primitive's three transformed vertices to the triangles that are rasterized: culling and clipping.
+#pragma once
+
+#include "pipeline/fragment_stream.hpp"
+#include "pipeline/functional/vertex_transform.hpp"
+
+#include <array>
+#include <cstdint>
+#include <glm/vec3.hpp>
+
+namespace pipeline {
+
+/// Which side of a triangle is culled.
+enum class Culling : std::uint8_t {
+    none,              ///< double-sided materials
+    clockwise,         ///< the back of a mesh whose front faces wind counter-clockwise, as glTF's do
+    counter_clockwise, ///< the same mesh under a mirroring model matrix (glTF 2.0, section 3.7.4)
+};
+
+/// Culling of a mesh under a model matrix.
+Culling culling_of(bool double_sided, const glm::mat4& model);
+
+/// One rasterized part of a primitive.
+struct PrimitivePart {
+    std::array<ScreenVertex, 3> corners;
+    std::array<glm::vec3, 3> weights; ///< barycentric coordinates of the corners; set only where clipped
+};
+
+struct PrimitiveParts {
+    PrimitiveFate fate = PrimitiveFate::drawn;
+    bool clipped = false;
+    std::uint32_t count = 0;
+    std::array<PrimitivePart, 7> parts; ///< the first `count`, each of non-zero area and touching the viewport
+};
+
+/// Decides the fate of a primitive, in this order: a vertex that is not finite, or no area on the sub-pixel grid, makes
+/// it degenerate; all vertices beyond one plane of the view volume, or no part on the screen, put it outside; then
+/// facing. `parts` is overwritten; it is a parameter so that a loop over primitives need not clear it.
+void cull_and_clip(const Viewport& viewport, Culling culling, const std::array<const ScreenVertex*, 3>& triangle,
+                   PrimitiveParts& parts);
+
+} // namespace pipeline

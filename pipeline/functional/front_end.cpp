@@ -1,0 +1,112 @@
+#include "pipeline/functional/front_end.hpp"
+
+#include "pipeline/functional/front_end_passes.hpp"
+#include "sim/check.hpp"
+
+#include <cmath>
+#include <fmt/format.h>
+#include <limits>
+#include <map>
+
+namespace pipeline {
+
+namespace {
+
+bool finite(const glm::mat4& matrix) {
+    for (int column = 0; column < 4; ++column)
+        for (int row = 0; row < 4; ++row)
+            if (!std::isfinite(matrix[column][row])) return false;
+    return true;
+}
+
+void check_view(const View& view) {
+    if (view.width < 1 || view.width > largest_viewport || view.height < 1 || view.height > largest_viewport)
+        throw sim::InputError(fmt::format("view: expected a width and a height of 1 to {} pixels, not {}x{}",
+                                          largest_viewport, view.width, view.height));
+    if (!finite(view.view) || !finite(view.projection))
+        throw sim::InputError("view: expected matrices of finite numbers");
+}
+
+void check_draw(const Resources& resources, const std::vector<Draw>& draws, std::uint32_t index) {
+    if (index >= draws.size())
+        throw sim::InputError(fmt::format("draw {}: expected one of {} draws", index, draws.size()));
+    const Draw& draw = draws[index];
+    const auto require = [&](bool good, const char* expected) {
+        if (!good) throw sim::InputError(fmt::format("draw {} \"{}\": expected {}", index, draw.name, expected));
+    };
+    require(draw.geometry < resources.geometries.size(), "the number of an existing geometry");
+    require(draw.material < resources.materials.size(), "the number of an existing material");
+    require(!draw.instances.empty(), "at least one instance");
+    for (const glm::mat4& model : draw.instances) require(finite(model), "model matrices of finite numbers");
+}
+
+/// Lays out the instances, their primitives and their vertices.
+void make_plan(FrontEndPlan& plan, FragmentStream& stream, const std::vector<Draw>& draws,
+               std::span<const std::uint32_t> which) {
+    std::map<std::uint32_t, VertexRange> used;
+    std::uint64_t vertices = 0, primitives = 0;
+    for (const std::uint32_t number : which) {
+        check_draw(plan.resources, draws, number);
+        const Draw& draw = draws[number];
+        const Geometry& geometry = plan.resources.geometries[draw.geometry];
+        const Material& material = plan.resources.materials[draw.material];
+        const std::uint32_t count = geometry.triangle_count();
+        auto known = used.find(draw.geometry);
+        if (known == used.end()) known = used.emplace(draw.geometry, used_vertices(plan.resources, geometry)).first;
+        for (std::size_t i = 0; i < draw.instances.size(); ++i) {
+            const glm::mat4& model = draw.instances[i];
+            plan.instances.push_back(
+                {&geometry, &material, &model, known->second, vertices, culling_of(material.double_sided, model)});
+            if (primitives + count > std::numeric_limits<std::uint32_t>::max())
+                throw sim::InputError(
+                    fmt::format("draw {} \"{}\": expected at most 2^32 - 1 primitives in a pass", number, draw.name));
+            stream.draws.push_back(
+                {number, static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(primitives), count, 0, 0});
+            vertices += known->second.end - known->second.first;
+            primitives += count;
+        }
+    }
+    stream.draws.shrink_to_fit();
+    stream.primitives.resize(primitives);
+    plan.vertices.resize(vertices);
+}
+
+} // namespace
+
+void FrontEndProgress::begin_pass(std::size_t pieces, double share_at_end) {
+    pieces_ = pieces;
+    done_ = 0;
+    share_at_begin_ = share_at_end_;
+    share_at_end_ = share_at_end;
+}
+
+void FrontEndProgress::begin_piece() const {
+    if (options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed)) throw sim::Interrupted();
+}
+
+void FrontEndProgress::end_piece() {
+    if (!options_.progress) return;
+    const std::lock_guard lock(mutex_);
+    ++done_;
+    const double share =
+        share_at_begin_ + (share_at_end_ - share_at_begin_) * static_cast<double>(done_) / static_cast<double>(pieces_);
+    if (share < last_told_ + 0.01 && share < 1.0) return;
+    last_told_ = share;
+    options_.progress(share);
+}
+
+FragmentStream rasterize(const Resources& resources, const std::vector<Draw>& draws,
+                         std::span<const std::uint32_t> which, const View& view, const FrontEndOptions& options) {
+    check_view(view);
+    FragmentStream stream;
+    stream.width = view.width;
+    stream.height = view.height;
+    FrontEndPlan plan(resources, view, options);
+    make_plan(plan, stream, draws, which);
+    transform_pass(plan);
+    coverage_pass(plan, stream);
+    shading_pass(plan, stream);
+    return stream;
+}
+
+} // namespace pipeline

@@ -1,0 +1,34 @@
+// The functional front end: everything up to the shaded fragment, as a pure function of draws and view.
+//
+// Modelled: vertex fetch and transform (each vertex once per instance), culling, clipping, rasterization, depth
+// interpolation, shading, alpha test. Not modelled here: time, and whatever depends on other fragments.
+#pragma once
+
+#include "pipeline/draw.hpp"
+#include "pipeline/fragment_stream.hpp"
+
+#include <atomic>
+#include <functional>
+#include <span>
+#include <vector>
+
+namespace pipeline {
+
+struct FrontEndOptions {
+    bool colours = true;                     ///< fill FragmentStream::colours
+    bool textures = true;                    ///< read textures; without, materials have their base colour only
+    bool alpha_test = true;                  ///< discard fragments of masked materials
+    unsigned threads = 0;                    ///< 0 = all cores; the result is the same for any number
+    const std::atomic<bool>* stop = nullptr; ///< when it becomes true, sim::Interrupted is thrown
+    std::function<void(double)> progress;    ///< called with the share done, 0 to 1, never by two threads at once
+};
+
+/// Rasterizes and shades the given draws, in the given order, as seen by `view`.
+///
+/// `resources` must satisfy Resources::validate(). `which` holds indices into `draws`; Triangle::draw and
+/// DrawRange::draw are such indices too. Throws sim::InputError when the view, an index in `which`, or a draw is
+/// unusable, and when the result has more primitives, triangles or quads than 32-bit numbers can count.
+FragmentStream rasterize(const Resources& resources, const std::vector<Draw>& draws,
+                         std::span<const std::uint32_t> which, const View& view, const FrontEndOptions& options = {});
+
+} // namespace pipeline

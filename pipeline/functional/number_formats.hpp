@@ -1,0 +1,40 @@
+// Number formats of buffers and surfaces: IEEE half, unsigned normalised 8 bits, sRGB; all bit-exact.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
+
+namespace pipeline {
+
+/// Nearest integer, ties to even, |value| < 2^51; whatever the rounding mode functions of the C library cost.
+constexpr double round_even(double value) {
+    // Adding 1.5 * 2^52 leaves no bits for a fraction; the FPU rounds them off to nearest even.
+    constexpr double magic = 0x1.8p52;
+    return (value + magic) - magic;
+}
+
+/// binary16 -> binary32, exact. Infinities and NaNs stay what they are.
+float half_to_float(std::uint16_t half);
+
+/// binary32 -> binary16, to nearest even; 65520 and more become infinity.
+std::uint16_t float_to_half(float value);
+
+/// [0,1] -> 0..255 to nearest even. Below 0 and NaN give 0, above 1 gives 255.
+constexpr std::uint8_t float_to_unorm8(float value) {
+    if (!(value > 0.0F)) return 0;
+    if (value >= 1.0F) return 255;
+    return static_cast<std::uint8_t>(round_even(static_cast<double>(value) * 255.0)); // the product is exact
+}
+constexpr float unorm8_to_float(std::uint8_t code) { return static_cast<float>(code) / 255.0F; }
+
+/// The linear value of every sRGB code (IEC 61966-2-1).
+const std::array<float, 256>& srgb_decode_table();
+
+/// code / 255 of every code: the same for images that are not sRGB-encoded, and for alpha.
+const std::array<float, 256>& unorm8_decode_table();
+
+/// The nearest sRGB code of a linear value; clamps like float_to_unorm8.
+std::uint8_t srgb_encode(float linear);
+
+} // namespace pipeline

@@ -1,0 +1,163 @@
+#include "pipeline/functional/shader.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace pipeline {
+
+namespace {
+
+// Attributes and factors are kept within these, so that no product of them overflows; real data is far below.
+constexpr float largest_colour = 65504.0F;
+constexpr float largest_normal = 1e9F;
+constexpr float largest_texcoord = 0x1p24F; // has no fraction any more
+
+float bounded(float value, float largest) { return std::isnan(value) ? 0.0F : std::clamp(value, -largest, largest); }
+
+template <class Vector>
+Vector bounded_vector(Vector vector, float largest) {
+    for (int i = 0; i < Vector::length(); ++i) vector[i] = bounded(vector[i], largest);
+    return vector;
+}
+
+/// The matrix that takes normals along: cofactors of the upper 3x3, scaled to unit size. Unlike the inverse transpose
+/// it exists for singular matrices.
+glm::dmat3 normal_matrix(const glm::mat4& model_to_eye) {
+    const glm::dmat3 m{glm::dmat4(model_to_eye)};
+    const glm::dmat3 cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
+    double size = 0.0;
+    for (int column = 0; column < 3; ++column)
+        for (int row = 0; row < 3; ++row) size = std::max(size, std::fabs(cofactors[column][row]));
+    return size > 0.0 && std::isfinite(size) ? cofactors / size : glm::dmat3(1.0);
+}
+
+std::optional<AttributeReader> reader(const Resources& resources, const Geometry& geometry, bool wanted,
+                                      Semantic semantic) {
+    const VertexAttribute* attribute = wanted ? geometry.find(semantic) : nullptr;
+    if (attribute == nullptr) return std::nullopt;
+    return AttributeReader(resources, *attribute);
+}
+
+Semantic texcoord_of(const Material& material) {
+    return material.texcoord == 0 ? Semantic::texcoord0 : Semantic::texcoord1;
+}
+
+float lambert(float cosine) { return ambient_light + (1.0F - ambient_light) * cosine; }
+
+} // namespace
+
+FragmentShader::FragmentShader(const Resources& resources, const Geometry& geometry, const Material& material,
+                               const glm::mat4& model_to_eye, const ShaderOptions& options)
+    : options_(options),
+      positions_(resources, *geometry.find(Semantic::position)),
+      normals_(reader(resources, geometry, options.colours && !material.unlit, Semantic::normal)),
+      colours_(reader(resources, geometry, true, Semantic::colour)),
+      texcoords_(reader(resources, geometry, options.textures && material.base_texture >= 0, texcoord_of(material))),
+      normal_matrix_(normal_matrix(model_to_eye)),
+      texcoord_matrix_(material.uv_transform),
+      base_colour_(bounded_vector(material.base_colour, largest_colour)),
+      alpha_cutoff_(material.alpha_cutoff),
+      discards_(options.alpha_test && material.alpha_mode == AlphaMode::mask),
+      lit_(options.colours && !material.unlit),
+      keeps_alpha_(material.transparent()) {
+    if (texcoords_ && needed()) sampler_.emplace(resources.textures[static_cast<std::size_t>(material.base_texture)]);
+}
+
+ShaderCorner FragmentShader::corner(std::uint32_t vertex) const {
+    ShaderCorner result;
+    if (normals_) {
+        const glm::dvec3 normal(bounded_vector(glm::vec3((*normals_)(vertex)), largest_normal));
+        result.normal = glm::vec3(normal_matrix_ * normal);
+    }
+    if (colours_) result.colour = bounded_vector((*colours_)(vertex), largest_colour);
+    if (sampler_) {
+        const glm::vec4 raw = (*texcoords_)(vertex);
+        result.texcoord = bounded_vector(glm::vec2(texcoord_matrix_ * glm::vec3(raw.x, raw.y, 1.0F)), largest_texcoord);
+    }
+    return result;
+}
+
+float FragmentShader::face_light(const std::array<std::uint32_t, 3>& vertices) const {
+    const glm::dvec3 a(positions_(vertices[0])), b(positions_(vertices[1])), c(positions_(vertices[2]));
+    const glm::dvec3 normal = normal_matrix_ * glm::cross(b - a, c - a);
+    const double length = glm::length(normal);
+    return length > 0.0 && std::isfinite(length) ? lambert(static_cast<float>(std::fabs(normal.z) / length)) : 1.0F;
+}
+
+ShaderTriangle FragmentShader::triangle(const std::array<std::uint32_t, 3>& vertices,
+                                        const std::array<glm::vec3, 3>* weights) const {
+    ShaderTriangle result;
+    for (std::size_t i = 0; i < 3; ++i) result.corners[i] = corner(vertices[i]);
+    if (lit_ && !normals_) result.face_light = face_light(vertices);
+    if (weights == nullptr) return result;
+
+    const std::array<ShaderCorner, 3> whole = result.corners;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const glm::vec3& w = (*weights)[i];
+        result.corners[i].normal = whole[0].normal * w.x + whole[1].normal * w.y + whole[2].normal * w.z;
+        result.corners[i].colour = whole[0].colour * w.x + whole[1].colour * w.y + whole[2].colour * w.z;
+        result.corners[i].texcoord = whole[0].texcoord * w.x + whole[1].texcoord * w.y + whole[2].texcoord * w.z;
+    }
+    return result;
+}
+
+Lanes FragmentShader::light(const ShaderTriangle& triangle, const QuadWeights& weights) const {
+    const auto& c = triangle.corners;
+    const auto x = TriangleInterpolator::interpolate(weights, c[0].normal.x, c[1].normal.x, c[2].normal.x);
+    const auto y = TriangleInterpolator::interpolate(weights, c[0].normal.y, c[1].normal.y, c[2].normal.y);
+    const auto z = TriangleInterpolator::interpolate(weights, c[0].normal.z, c[1].normal.z, c[2].normal.z);
+    Lanes result;
+    for (std::size_t lane = 0; lane < 4; ++lane) {
+        const float squared = x[lane] * x[lane] + y[lane] * y[lane] + z[lane] * z[lane];
+        // A normal of no length, or too short to be squared, lights fully.
+        result[lane] = squared > 1e-30F ? lambert(std::min(std::fabs(z[lane]) / std::sqrt(squared), 1.0F)) : 1.0F;
+    }
+    return result;
+}
+
+void FragmentShader::texture(const ShaderTriangle& triangle, const QuadWeights& weights, unsigned covered,
+                             Output& output) const {
+    const auto& c = triangle.corners;
+    const auto u = TriangleInterpolator::interpolate(weights, c[0].texcoord.x, c[1].texcoord.x, c[2].texcoord.x);
+    const auto v = TriangleInterpolator::interpolate(weights, c[0].texcoord.y, c[1].texcoord.y, c[2].texcoord.y);
+    std::array<glm::vec2, 4> coordinates;
+    for (std::size_t lane = 0; lane < 4; ++lane) coordinates[lane] = {u[lane], v[lane]};
+    const float level_of_detail = sampler_->level_of_detail(coordinates);
+    for (std::size_t lane = 0; lane < 4; ++lane)
+        if (((covered >> lane) & 1U) != 0) output.colours[lane] *= sampler_->sample(coordinates[lane], level_of_detail);
+    output.texture_line =
+        sampler_->line(coordinates[static_cast<std::size_t>(std::countr_zero(covered))], level_of_detail);
+}
+
+FragmentShader::Output FragmentShader::shade(const ShaderTriangle& triangle, const QuadWeights& weights,
+                                             unsigned covered) const {
+    Output output;
+    output.alive = static_cast<std::uint8_t>(covered);
+    output.colours.fill(base_colour_);
+    const auto& c = triangle.corners;
+    if (colours_)
+        for (int channel = 0; channel < 4; ++channel) {
+            const auto values = TriangleInterpolator::interpolate(weights, c[0].colour[channel], c[1].colour[channel],
+                                                                  c[2].colour[channel]);
+            for (std::size_t lane = 0; lane < 4; ++lane) output.colours[lane][channel] *= values[lane];
+        }
+    if (sampler_) texture(triangle, weights, covered, output);
+
+    Lanes lights;
+    lights.fill(triangle.face_light);
+    if (normals_) lights = light(triangle, weights);
+    for (std::size_t lane = 0; lane < 4; ++lane) {
+        glm::vec4& colour = output.colours[lane];
+        // glTF 2.0, section 3.9.4: a fragment whose alpha equals the cutoff is drawn.
+        if (discards_ && !(colour.a >= alpha_cutoff_)) output.alive &= static_cast<std::uint8_t>(~(1U << lane));
+        if (((covered >> lane) & 1U) == 0) {
+            colour = glm::vec4(0.0F);
+        } else {
+            colour = glm::vec4(glm::vec3(colour) * lights[lane], keeps_alpha_ ? colour.a : 1.0F);
+        }
+    }
+    return output;
+}
+
+} // namespace pipeline

@@ -1,0 +1,89 @@
+// The fragment shader: base colour x vertex colour x texture, lit by a lamp on the camera; alpha test.
+//
+// Lighting is a two-sided Lambert term with an ambient floor: ambient + (1 - ambient) * |n.z|, n the unit normal in eye
+// space. Geometry without normals takes the face normal. Unlit materials skip it.
+#pragma once
+
+#include "pipeline/draw.hpp"
+#include "pipeline/frame.hpp"
+#include "pipeline/functional/interpolation.hpp"
+#include "pipeline/functional/texture_sampler.hpp"
+#include "pipeline/functional/vertex_fetch.hpp"
+
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <optional>
+
+namespace pipeline {
+
+/// Light that reaches a surface seen edge-on.
+inline constexpr float ambient_light = 0.25F;
+
+/// Instructions, texture reads and registers of the shader that `material` needs on `geometry` in a frame with `needs`:
+/// what the frame does not need, and what the geometry does not have, costs nothing. The table is in README.md.
+ShaderCost shader_cost(const Material& material, const Geometry& geometry, const Needs& needs);
+
+/// What the fragments of a draw are asked for.
+struct ShaderOptions {
+    bool colours = true;
+    bool textures = true;
+    bool alpha_test = true;
+};
+
+/// Attributes at a corner of a triangle.
+struct ShaderCorner {
+    glm::vec3 normal{}; ///< eye space, any length
+    glm::vec4 colour{1.0F};
+    glm::vec2 texcoord{}; ///< transformed by the material
+};
+
+/// A primitive part ready for shading.
+struct ShaderTriangle {
+    std::array<ShaderCorner, 3> corners;
+    float face_light = 1.0F; ///< where there are no vertex normals
+};
+
+/// The shader of one instance of one draw.
+class FragmentShader {
+  public:
+    FragmentShader(const Resources& resources, const Geometry& geometry, const Material& material,
+                   const glm::mat4& model_to_eye, const ShaderOptions& options);
+
+    /// True when shade() must be called: a colour is wanted, or fragments may be discarded.
+    bool needed() const { return options_.colours || discards_; }
+    /// True when shade() reads the texture.
+    bool samples() const { return sampler_.has_value(); }
+
+    /// Attributes of a part of the primitive with these vertices. `weights`: see PrimitivePart; null when not clipped.
+    ShaderTriangle triangle(const std::array<std::uint32_t, 3>& vertices,
+                            const std::array<glm::vec3, 3>* weights) const;
+
+    struct Output {
+        std::array<glm::vec4, 4> colours; ///< linear RGBA; 0 where not covered
+        std::uint8_t alive = 0;           ///< covered and not discarded
+        std::uint32_t texture_line = ~0U; ///< of the first covered pixel; ~0 = no texture read
+    };
+    /// Shades the covered pixels of a quad.
+    Output shade(const ShaderTriangle& triangle, const QuadWeights& weights, unsigned covered) const;
+
+  private:
+    ShaderCorner corner(std::uint32_t vertex) const;
+    float face_light(const std::array<std::uint32_t, 3>& vertices) const;
+    Lanes light(const ShaderTriangle& triangle, const QuadWeights& weights) const;
+    void texture(const ShaderTriangle& triangle, const QuadWeights& weights, unsigned covered, Output& output) const;
+
+    ShaderOptions options_;
+    AttributeReader positions_;
+    std::optional<AttributeReader> normals_, colours_, texcoords_;
+    std::optional<TextureSampler> sampler_;
+    glm::dmat3 normal_matrix_; ///< model to eye space, of unit size
+    glm::mat3 texcoord_matrix_;
+    glm::vec4 base_colour_;
+    float alpha_cutoff_;
+    bool discards_; ///< the material is alpha-tested and somebody asks
+    bool lit_;
+    bool keeps_alpha_; ///< the surface blends; others are opaque
+};
+
+} // namespace pipeline

@@ -1,0 +1,32 @@
+// What the shader of shader.hpp would cost on a machine with one instruction per quad and clock; see README.md.
+#include "pipeline/functional/shader.hpp"
+
+namespace pipeline {
+
+ShaderCost shader_cost(const Material& material, const Geometry& geometry, const Needs& needs) {
+    const bool tests = needs.alpha_test && material.alpha_mode == AlphaMode::mask;
+    ShaderCost cost{1, 0, 1}; // the result's own move and register
+    if (!needs.colours && !tests) return cost;
+
+    const Semantic texcoord = material.texcoord == 0 ? Semantic::texcoord0 : Semantic::texcoord1;
+    if (needs.vertex_colours && geometry.find(Semantic::colour) != nullptr) {
+        cost.alu += 2; // interpolate, multiply
+        cost.registers += 1;
+    }
+    if (needs.textures && material.base_texture >= 0 && geometry.find(texcoord) != nullptr) {
+        cost.alu += 2; // interpolate, multiply
+        cost.textures += 1;
+        cost.registers += 2;
+    }
+    if (needs.colours && !material.unlit) {
+        const bool smooth = needs.normals && geometry.find(Semantic::normal) != nullptr;
+        // Interpolate, or two derivatives and a cross product of two instructions; then dot, reciprocal root, multiply,
+        // ambient multiply-add, multiply.
+        cost.alu += (smooth ? 1U : 4U) + 5U;
+        cost.registers += smooth ? 1U : 2U;
+    }
+    if (tests) cost.alu += 2; // compare, discard
+    return cost;
+}
+
+} // namespace pipeline

@@ -1,0 +1,124 @@
+// The last pass of the front end: depth, colour and alpha test of every quad.
+//
+// A piece of work is a run of quads; the triangle they belong to is set up again from its vertices, which is cheaper
+// than keeping the setup of millions of triangles.
+#include "pipeline/functional/front_end_passes.hpp"
+#include "pipeline/functional/interpolation.hpp"
+#include "pipeline/functional/parallel.hpp"
+#include "pipeline/functional/raster_triangle.hpp"
+#include "pipeline/functional/shader.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <optional>
+
+namespace pipeline {
+
+namespace {
+
+constexpr std::size_t quads_per_piece = 8192;
+
+ShaderOptions shader_options(const FrontEndOptions& options) {
+    return {options.colours, options.textures, options.alpha_test};
+}
+
+FragmentShader make_shader(const FrontEndPlan& plan, const PlannedInstance& instance) {
+    return {plan.resources, *instance.geometry, *instance.material, plan.view.view * *instance.model,
+            shader_options(plan.options)};
+}
+
+/// True when some draw's shader reads a texture.
+bool textures_are_read(const FrontEndPlan& plan) {
+    return std::any_of(plan.instances.begin(), plan.instances.end(), [&](const PlannedInstance& instance) {
+        return instance.material->base_texture >= 0 && make_shader(plan, instance).samples();
+    });
+}
+
+/// Shades a run of quads.
+class Shading {
+  public:
+    Shading(const FrontEndPlan& plan, FragmentStream& stream) : plan_(plan), stream_(stream) {}
+
+    /// Returns how many fragments were discarded.
+    std::uint64_t run(std::size_t begin, std::size_t end) {
+        std::uint64_t discarded = 0;
+        for (std::size_t i = begin; i < end; ++i) {
+            Quad& quad = stream_.quads[i];
+            if (i == begin || quad.triangle != current_triangle_) enter_triangle(quad.triangle);
+            shade(i, quad);
+            discarded += static_cast<unsigned>(std::popcount(static_cast<unsigned>(quad.covered ^ quad.alive)));
+        }
+        return discarded;
+    }
+
+  private:
+    void enter_instance(std::uint32_t primitive) {
+        const auto after =
+            std::upper_bound(stream_.draws.begin(), stream_.draws.end(), primitive,
+                             [](std::uint32_t p, const DrawRange& range) { return p < range.first_primitive; });
+        range_ = &*(after - 1);
+        instance_ = &plan_.instances[static_cast<std::size_t>(range_ - stream_.draws.data())];
+        shader_.emplace(make_shader(plan_, *instance_));
+        reader_.emplace(plan_.resources, *instance_->geometry);
+    }
+
+    void enter_triangle(std::uint32_t number) {
+        current_triangle_ = number;
+        const std::uint32_t primitive = stream_.triangles[number].primitive;
+        if (range_ == nullptr || primitive - range_->first_primitive >= range_->primitives) enter_instance(primitive);
+
+        const auto vertices = (*reader_)(primitive - range_->first_primitive);
+        cull_and_clip(plan_.viewport, instance_->culling, plan_.corners(*instance_, vertices), parts_);
+        const PrimitivePart& part = parts_.parts[number - stream_.primitives[primitive].first_triangle];
+        const RasterTriangle raster = set_up(part.corners[0], part.corners[1], part.corners[2], plan_.viewport);
+        interpolator_.emplace(raster, part.corners);
+        if (shader_->needed()) triangle_ = shader_->triangle(vertices, parts_.clipped ? &part.weights : nullptr);
+    }
+
+    void shade(std::size_t i, Quad& quad) {
+        QuadWeights weights;
+        interpolator_->screen_weights(quad.x, quad.y, weights);
+        stream_.depths[i] = interpolator_->depth(weights);
+        quad.alive = quad.covered;
+        if (!shader_->needed()) return;
+        interpolator_->perspective_weights(quad.covered, weights);
+        const FragmentShader::Output output = shader_->shade(triangle_, weights, quad.covered);
+        quad.alive = output.alive;
+        if (!stream_.colours.empty()) stream_.colours[i] = output.colours;
+        if (!stream_.texture_lines.empty()) stream_.texture_lines[i] = output.texture_line;
+    }
+
+    const FrontEndPlan& plan_;
+    FragmentStream& stream_;
+    const DrawRange* range_ = nullptr;
+    const PlannedInstance* instance_ = nullptr;
+    std::optional<FragmentShader> shader_;
+    std::optional<PrimitiveReader> reader_;
+    std::optional<TriangleInterpolator> interpolator_;
+    PrimitiveParts parts_;
+    ShaderTriangle triangle_;
+    std::uint32_t current_triangle_ = 0;
+};
+
+} // namespace
+
+void shading_pass(FrontEndPlan& plan, FragmentStream& stream) {
+    const std::size_t quads = stream.quads.size();
+    stream.depths.resize(quads);
+    if (plan.options.colours) stream.colours.resize(quads);
+    if (textures_are_read(plan)) stream.texture_lines.resize(quads, ~0U);
+
+    const std::size_t pieces = (quads + quads_per_piece - 1) / quads_per_piece;
+    plan.progress.begin_pass(pieces, 1.0);
+    std::atomic<std::uint64_t> discarded{0};
+    parallel_for(plan.options.threads, pieces, [&](std::size_t i) {
+        plan.progress.begin_piece();
+        Shading shading(plan, stream);
+        discarded += shading.run(i * quads_per_piece, std::min((i + 1) * quads_per_piece, quads));
+        plan.progress.end_piece();
+    });
+    stream.fragments_discarded = discarded;
+}
+
+} // namespace pipeline

@@ -1,0 +1,124 @@
+// Reading vertices and indices out of buffers: every component type, normalised or not, any stride and alignment.
+//
+// The readers trust Resources::validate(): they check nothing.
+#pragma once
+
+#include "pipeline/draw.hpp"
+#include "pipeline/functional/number_formats.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <glm/vec4.hpp>
+
+namespace pipeline {
+
+/// Reads elements of one vertex attribute as four floats.
+///
+/// Missing components are 0, the fourth 1 (OpenGL 4.5, section 10.2). Normalised signed integers map to
+/// max(c / (2^(b-1) - 1), -1), unsigned ones to c / (2^b - 1) (section 2.3.5); others to their value.
+class AttributeReader {
+  public:
+    AttributeReader(const Resources& resources, const VertexAttribute& attribute)
+        : first_(resources.buffers[attribute.buffer].bytes.data() + attribute.offset),
+          stride_(attribute.stride),
+          type_(attribute.type),
+          components_(attribute.components),
+          normalized_(attribute.normalized) {}
+
+    glm::vec4 operator()(std::uint32_t element) const {
+        const std::byte* source = first_ + element * stride_;
+        if (type_ == ComponentType::f32) return floats(source);
+        return converted(source);
+    }
+
+  private:
+    glm::vec4 floats(const std::byte* source) const {
+        glm::vec4 result(0.0F, 0.0F, 0.0F, 1.0F);
+        if (components_ == 3) { // by far the most frequent case: a copy of known size
+            std::memcpy(&result, source, 12);
+        } else {
+            std::memcpy(&result, source, std::size_t{components_} * 4);
+        }
+        return result;
+    }
+    glm::vec4 converted(const std::byte* source) const;
+
+    const std::byte* first_;
+    std::uint64_t stride_;
+    ComponentType type_;
+    std::uint8_t components_;
+    bool normalized_;
+};
+
+/// Reads the i-th vertex number of a geometry; the number is i where there is no index buffer.
+class IndexReader {
+  public:
+    IndexReader(const Resources& resources, const Geometry& geometry)
+        : first_(geometry.index_type == IndexType::none
+                     ? nullptr
+                     : resources.buffers[geometry.index_buffer].bytes.data() + geometry.index_offset),
+          type_(geometry.index_type) {}
+
+    std::uint32_t operator()(std::uint32_t i) const {
+        switch (type_) {
+        case IndexType::u32:
+            return read<std::uint32_t>(i);
+        case IndexType::u16:
+            return read<std::uint16_t>(i);
+        case IndexType::u8:
+            return read<std::uint8_t>(i);
+        case IndexType::none:
+            break;
+        }
+        return i;
+    }
+
+  private:
+    template <class Index>
+    std::uint32_t read(std::uint32_t i) const {
+        Index value;
+        std::memcpy(&value, first_ + std::size_t{i} * sizeof(Index), sizeof(Index));
+        return value;
+    }
+
+    const std::byte* first_;
+    IndexType type_;
+};
+
+/// Assembles the primitives of a geometry in its topology.
+class PrimitiveReader {
+  public:
+    PrimitiveReader(const Resources& resources, const Geometry& geometry)
+        : index_(resources, geometry), topology_(geometry.topology) {}
+
+    /// The three vertices of a primitive; every second triangle of a strip is turned round so that all wind alike
+    /// (glTF 2.0, section 3.7.2.1).
+    std::array<std::uint32_t, 3> operator()(std::uint32_t primitive) const {
+        switch (topology_) {
+        case Topology::triangle_strip: {
+            const std::uint32_t odd = primitive & 1U;
+            return {index_(primitive), index_(primitive + 1 + odd), index_(primitive + 2 - odd)};
+        }
+        case Topology::triangle_fan:
+            return {index_(primitive + 1), index_(primitive + 2), index_(0)};
+        case Topology::triangles:
+            break;
+        }
+        return {index_(3 * primitive), index_(3 * primitive + 1), index_(3 * primitive + 2)};
+    }
+
+  private:
+    IndexReader index_;
+    Topology topology_;
+};
+
+/// The vertices [first, end) that the indices of a geometry lie in; {0, 0} when it draws nothing.
+struct VertexRange {
+    std::uint32_t first = 0;
+    std::uint32_t end = 0;
+};
+VertexRange used_vertices(const Resources& resources, const Geometry& geometry);
+
+} // namespace pipeline

@@ -1,0 +1,53 @@
+#include "pipeline/functional/vertex_transform.hpp"
+
+#include "pipeline/functional/number_formats.hpp"
+
+#include <limits>
+
+namespace pipeline {
+
+namespace {
+
+/// From window coordinates in pixels to sub-pixel units relative to pixel centres, to nearest even.
+std::int32_t snap(float window) {
+    return static_cast<std::int32_t>(round_even(static_cast<double>((window - 0.5F) * subpixel_one)));
+}
+
+} // namespace
+
+std::uint32_t Viewport::outcode(const glm::vec4& clip) const {
+    constexpr float largest = std::numeric_limits<float>::max();
+    const float x = clip.x, y = clip.y, z = clip.z, w = clip.w;
+    const auto finite = [](float value) { return std::fabs(value) <= largest; }; // false for NaN
+    if (!(finite(x) && finite(y) && finite(z) && finite(w))) return outside::not_finite;
+
+    const auto when = [](bool condition, std::uint32_t bit) { return condition ? bit : 0U; };
+    std::uint32_t code = when(x < -w, outside::left) | when(x > w, outside::right) | when(y < -w, outside::bottom) |
+                         when(y > w, outside::top) | when(z < -w, outside::near) | when(z > w, outside::far);
+    if (code == 0) return 0;
+    // In binary64 the products are exact, so the clipper finds the same corners outside.
+    const double band_x = static_cast<double>(guard_x_) * static_cast<double>(w);
+    const double band_y = static_cast<double>(guard_y_) * static_cast<double>(w);
+    code |= when(static_cast<double>(x) < -band_x, outside::guard_left) |
+            when(static_cast<double>(x) > band_x, outside::guard_right) |
+            when(static_cast<double>(y) < -band_y, outside::guard_bottom) |
+            when(static_cast<double>(y) > band_y, outside::guard_top);
+    return code;
+}
+
+void Viewport::project(ScreenVertex& vertex) const {
+    const float inverse = 1.0F / std::max(vertex.clip.w, smallest_w);
+    const float x = std::fma(vertex.clip.x * inverse, half_width_, half_width_);
+    // Row 0 is the top row: y is negated before the viewport, where negation is exact.
+    const float y = std::fma(-(vertex.clip.y * inverse), half_height_, half_height_);
+    const float depth = std::fma(vertex.clip.z * inverse, 0.5F, 0.5F);
+    vertex.x = snap(x);
+    vertex.y = snap(y);
+    vertex.depth = std::clamp(depth, 0.0F, 1.0F);
+}
+
+glm::mat4 clip_matrix(const View& view, const glm::mat4& model) {
+    return glm::mat4(glm::dmat4(view.projection) * glm::dmat4(view.view) * glm::dmat4(model));
+}
+
+} // namespace pipeline

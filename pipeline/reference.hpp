@@ -1,0 +1,40 @@
+// SEQ: a frame executed in submission order, one fragment at a time, without time (specification 004, section 7). What
+// every design is compared with, made of the same functional routines.
+//
+// Modelled: depth test and write in the surface's own format, colour writes, k-buffer programs, clears, the resolve
+// pass. Not modelled: time, and whatever a design does to protect pixels.
+#pragma once
+
+#include "pipeline/fragment_stream.hpp"
+#include "pipeline/frame.hpp"
+
+#include <span>
+#include <vector>
+
+namespace pipeline {
+
+/// Surfaces after a frame; row 0 first. A surface that no pass writes is empty.
+struct ReferenceImage {
+    std::vector<float> kbuffer; ///< program->floats_per_pixel() floats per pixel
+    std::vector<float> depth;   ///< window depth per pixel, as the depth format holds it
+    std::vector<float> colour;  ///< RGBA per pixel of the "colour" surface, as the colour format holds it
+    std::vector<float> picture; ///< RGBA per pixel that the resolve pass makes; empty without one
+
+    /// Per pixel: alive fragments that reached the k-buffer; the depth test, in frames without a k-buffer.
+    std::vector<std::uint32_t> depth_complexity;
+    std::uint64_t accepted_insertions = 0; ///< k-buffer updates that changed their pixel
+
+    // Constant-distance mode (delay > 1) only, else 0.
+    std::uint64_t missed_reads = 0;  ///< fragments whose read lacked the update of a predecessor at their pixel
+    std::uint64_t missed_pixels = 0; ///< pixels with such a fragment
+};
+
+/// Executes the frame. `streams` holds one stream for each draw pass of the frame, in pass order.
+///
+/// With `delay` = H > 1, quad i reads a pixel's k-buffer as the quads up to i - H left it, and stores its result in
+/// raster order: a later store overwrites what an earlier one it did not see had changed (checks K1 and K4). H = 1 is
+/// SEQ. Depth and colour are always in order. The result is the same for any number of threads (0 = all cores).
+ReferenceImage run_reference(const Frame& frame, std::span<const FragmentStream> streams, QuadId delay = 1,
+                             unsigned threads = 0);
+
+} // namespace pipeline

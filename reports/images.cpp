@@ -39,24 +39,22 @@ const RopsimImageModule& image_module() {
     return *loaded;
 }
 
-// OpenImageIO's texts name the temporary file; the user knows the final one.
-[[noreturn]] void cannot_write(const fs::path& path, const fs::path& temporary, std::string reason) {
-    for (const std::string& name : {temporary.string(), temporary.filename().string()})
-        for (std::size_t at = reason.find(name); at != std::string::npos; at = reason.find(name))
-            reason.replace(at, name.size(), "it");
-    throw sim::InputError(fmt::format("{}: cannot be written: {}", path.string(), reason));
+void collect(void* text, const std::uint8_t* bytes, std::size_t size) {
+    static_cast<std::string*>(text)->assign(reinterpret_cast<const char*>(bytes), size);
 }
 
-template <class Write>
-void write_atomically(const fs::path& path, const std::vector<std::string>& channels, std::uint32_t width,
-                      std::uint32_t height, Write write) {
+// `encode(shape, file, error)` is one of the module's functions.
+template <class Encode>
+void write_encoded(const fs::path& path, const std::vector<std::string>& channels, std::uint32_t width,
+                   std::uint32_t height, Encode encode) {
     std::vector<const char*> names;
     for (const std::string& name : channels) names.push_back(name.c_str());
     const RopsimImageShape shape{width, height, static_cast<std::uint32_t>(names.size()), names.data()};
-    AtomicFile file(path);
+    std::string file;
     std::array<char, error_size> error{};
-    if (write(file.temporary().c_str(), &shape, error) != 0) cannot_write(path, file.temporary(), error.data());
-    file.commit();
+    if (encode(&shape, &file, error) != 0)
+        throw sim::InputError(fmt::format("{}: cannot be written: {}", path.string(), error.data()));
+    write_file(path, file);
 }
 
 } // namespace
@@ -67,21 +65,19 @@ void write_png(const fs::path& path, const Picture& picture) {
     CHECK(picture.pixels.size() == std::size_t{picture.width} * picture.height);
     static_assert(sizeof(Colour) == 3);
     const RopsimImageModule& images = image_module();
-    write_atomically(path, {"R", "G", "B"}, picture.width, picture.height,
-                     [&](const char* name, const RopsimImageShape* shape, std::array<char, error_size>& error) {
-                         return images.write_png(name, shape, picture.pixels.data()->data(), error.data(),
-                                                 error.size());
-                     });
+    write_encoded(path, {"R", "G", "B"}, picture.width, picture.height, [&](auto* shape, void* file, auto& error) {
+        return images.encode_png(shape, picture.pixels.data()->data(), collect, file, error.data(), error.size());
+    });
 }
 
 void write_exr(const fs::path& path, const Measurement& measurement) {
     CHECK(measurement.values.size() ==
           std::size_t{measurement.width} * measurement.height * measurement.channels.size());
     const RopsimImageModule& images = image_module();
-    write_atomically(path, measurement.channels, measurement.width, measurement.height,
-                     [&](const char* name, const RopsimImageShape* shape, std::array<char, error_size>& error) {
-                         return images.write_exr(name, shape, measurement.values.data(), error.data(), error.size());
-                     });
+    write_encoded(
+        path, measurement.channels, measurement.width, measurement.height, [&](auto* shape, void* file, auto& error) {
+            return images.encode_exr(shape, measurement.values.data(), collect, file, error.data(), error.size());
+        });
 }
 
 Measurement read_image(const fs::path& path) {

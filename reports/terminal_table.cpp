@@ -29,15 +29,15 @@ constexpr std::array<Column, 14> columns{{{"design", ""},
                                           {"cycles", ""},
                                           {"time", "ms"},
                                           {"frames", "/s"},
-                                          {"fragments", ""},
+                                          {"fragm.", ""},
                                           {"H1", "hazards"},
                                           {"H2", ""},
                                           {"H3", ""},
                                           {"H4", ""},
                                           {"wrong", "pixels"},
                                           {"lost", "fragm."},
-                                          {"DRAM", "B/fragm."},
-                                          {"speed", "relative"},
+                                          {"DRAM", "B/fragm"},
+                                          {"speed", "x"},
                                           {"host", "cycles/s"}}};
 
 std::string paint(std::string text, const char* code, bool colour) {

@@ -1,5 +1,6 @@
 #include "reports/image_module/image_module.h"
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
@@ -33,30 +34,41 @@ OIIO::ImageSpec spec_of(const RopsimImageShape& shape, OIIO::TypeDesc type) {
     return spec;
 }
 
-int write(const char* format, const char* path, const OIIO::ImageSpec& spec, const void* pixels, char* error,
-          std::size_t size) {
+struct Sink {
+    RopsimImageSink take;
+    void* data;
+};
+
+int encode(const char* format, const OIIO::ImageSpec& spec, const void* pixels, Sink sink, char* error,
+           std::size_t size) {
     try {
-        const auto output = OIIO::ImageOutput::create(format);
+        OIIO::Filesystem::IOVecOutput memory;
+        const auto output = OIIO::ImageOutput::create(format, &memory);
         if (!output) return fail(OIIO::geterror(), error, size);
-        const bool good = output->open(path, spec) && output->write_image(spec.format, pixels) && output->close();
-        return good ? 0 : fail(output->geterror(), error, size);
+        // The name tells nothing but the format.
+        const bool good = output->open(std::string("memory.") + format, spec) &&
+                          output->write_image(spec.format, pixels) && output->close();
+        if (!good) return fail(output->geterror(), error, size);
+        sink.take(sink.data, memory.buffer().data(), memory.buffer().size());
+        return 0;
     } catch (const std::exception& exception) {
         return fail(exception.what(), error, size);
     }
 }
 
-int write_png(const char* path, const RopsimImageShape* shape, const std::uint8_t* pixels, char* error,
-              std::size_t size) {
+int encode_png(const RopsimImageShape* shape, const std::uint8_t* pixels, RopsimImageSink sink, void* sink_data,
+               char* error, std::size_t size) {
     OIIO::ImageSpec spec = spec_of(*shape, OIIO::TypeDesc::UINT8);
     spec.attribute("oiio:ColorSpace", "sRGB");
-    return write("png", path, spec, pixels, error, size);
+    return encode("png", spec, pixels, {sink, sink_data}, error, size);
 }
 
-int write_exr(const char* path, const RopsimImageShape* shape, const float* pixels, char* error, std::size_t size) {
+int encode_exr(const RopsimImageShape* shape, const float* pixels, RopsimImageSink sink, void* sink_data, char* error,
+               std::size_t size) {
     OIIO::ImageSpec spec = spec_of(*shape, OIIO::TypeDesc::FLOAT);
     spec.attribute("compression", "zip");
     spec.attribute("oiio:ColorSpace", "Linear");
-    return write("openexr", path, spec, pixels, error, size);
+    return encode("exr", spec, pixels, {sink, sink_data}, error, size);
 }
 
 int read(const char* path, std::uint32_t* width, std::uint32_t* height, std::uint32_t* channels, float* pixels,
@@ -74,7 +86,7 @@ int read(const char* path, std::uint32_t* width, std::uint32_t* height, std::uin
     }
 }
 
-constexpr RopsimImageModule image_module{ROPSIM_IMAGE_MODULE_VERSION, write_png, write_exr, read};
+constexpr RopsimImageModule image_module{ROPSIM_IMAGE_MODULE_VERSION, encode_png, encode_exr, read};
 
 } // namespace
 

@@ -51,9 +51,7 @@ class Source final : public sim::Component {
     sim::Out<T> out{*this, "out"};
 
     Source(sim::Context context, std::vector<T> messages, SourceOptions options = {})
-        : Component(std::move(context)), messages_(std::move(messages)), options_(options) {
-        if (!messages_.empty()) wake_at(options_.start);
-    }
+        : Component(std::move(context)), messages_(std::move(messages)), options_(options) {}
 
     /// Cycles at which the messages were sent.
     const std::vector<sim::Cycle>& cycles() const { return cycles_; }

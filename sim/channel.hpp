@@ -175,14 +175,20 @@ class Out {
     explicit Out(Component& owner, std::string_view name) : owner_(&owner), name_(name) {}
     bool connected() const { return channel_ != nullptr; }
     /// Room and width are left at this edge. When false, the owner is woken as soon as that changes.
-    bool ready() { return channel_->ready(); }
+    bool ready() { return linked().ready(); }
     /// ready() must be true.
-    void send(const T& message) { channel_->send(message); }
+    void send(const T& message) { linked().send(message); }
     const ChannelBase* channel() const { return channel_; }
 
   private:
     template <class U>
     friend ChannelBase& connect(Out<U>&, In<U>&, ChannelConfig);
+    Channel<T>& linked() const {
+        CHECK_MSG(channel_ != nullptr, unlinked());
+        return *channel_;
+    }
+    std::string unlinked() const { return owner_->name() + "." + std::string(name_) + " is not linked"; }
+
     Component* owner_;
     std::string_view name_;
     Channel<T>* channel_ = nullptr;
@@ -194,17 +200,23 @@ class In {
     explicit In(Component& owner, std::string_view name) : owner_(&owner), name_(name) {}
     bool connected() const { return channel_ != nullptr; }
     /// The oldest message that has arrived, or nullptr; nullptr too once `width` messages were received at this edge.
-    T* peek() { return channel_->peek(); }
+    T* peek() { return linked().peek(); }
     /// Takes the message that peek() showed.
-    T receive() { return channel_->receive(); }
+    T receive() { return linked().receive(); }
     /// Drops the message that peek() showed.
-    void pop() { channel_->pop(); }
-    bool drained() const { return channel_->empty(); } ///< nothing buffered and nothing in flight
+    void pop() { linked().pop(); }
+    bool drained() const { return linked().empty(); } ///< nothing buffered and nothing in flight
     const ChannelBase* channel() const { return channel_; }
 
   private:
     template <class U>
     friend ChannelBase& connect(Out<U>&, In<U>&, ChannelConfig);
+    Channel<T>& linked() const {
+        CHECK_MSG(channel_ != nullptr, unlinked());
+        return *channel_;
+    }
+    std::string unlinked() const { return owner_->name() + "." + std::string(name_) + " is not linked"; }
+
     Component* owner_;
     std::string_view name_;
     Channel<T>* channel_ = nullptr;

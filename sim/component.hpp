@@ -44,6 +44,7 @@ class Component {
 
   protected:
     /// Does the work of one clock edge. The contract:
+    ///  - the first tick is at the first edge of the clock, at time 0 for what is built before the run;
     ///  - `busy` is ticked again at the next edge; any other activity sleeps until a message arrives, a credit comes
     ///    back to an output whose ready() was false, or a time asked for with wake_in() is reached;
     ///  - a superfluous tick is harmless: it returns the same activity and changes nothing;

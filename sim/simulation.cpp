@@ -23,6 +23,8 @@ Component::Component(Context context)
     queue_ = &domain.queue;
     index_ = queue_->add_component();
     domain.components.push_back(this);
+    simulation_->catch_up(domain);
+    wake_in(1);
     simulation_->components_.push_back(this);
 }
 

@@ -116,21 +116,22 @@ class Simulation {
     void run_sleepless(Watch& watch);
     void throw_if_stuck() const;
 
-    std::uint64_t seed_;
-    Mode mode_;
-    Random shuffle_;
+    // What every send and receive reads stands first.
     Time now_ = 0;
+    Observer* observer_ = nullptr;
     std::uint64_t ticks_ = 0;
     std::uint64_t patience_ = std::uint64_t{1} << 22U;
     bool started_ = false; ///< the instant now() has been served
     bool running_ = false;
-    Observer* observer_ = nullptr;
     CheckContext* context_ = nullptr; ///< of the thread that runs
     std::vector<std::unique_ptr<Domain>> domains_;
     std::vector<Component*> components_;
     std::vector<ChannelBase*> channels_;
     std::vector<std::unique_ptr<ChannelBase>> owned_channels_;
     std::vector<Component*> due_;
+    std::uint64_t seed_;
+    Mode mode_;
+    Random shuffle_;
 };
 
 inline Cycle Component::cycle() const { return queue_->current(); }

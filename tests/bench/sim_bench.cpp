@@ -15,7 +15,7 @@ constexpr std::uint64_t cycles_per_run = 100'000;
 /// The least a component can do.
 class Ticker final : public sim::Component {
   public:
-    explicit Ticker(sim::Context context) : Component(std::move(context)) { wake_in(1); }
+    explicit Ticker(sim::Context context) : Component(std::move(context)) {}
 
   private:
     sim::Activity tick() override { return cycle() < cycles_per_run ? sim::Activity::busy : sim::Activity::idle; }
@@ -25,7 +25,7 @@ class Ticker final : public sim::Component {
 class Generator final : public sim::Component {
   public:
     sim::Out<std::uint64_t> out{*this, "out"};
-    Generator(sim::Context context, std::uint64_t count) : Component(std::move(context)), left_(count) { wake_in(1); }
+    Generator(sim::Context context, std::uint64_t count) : Component(std::move(context)), left_(count) {}
 
   private:
     sim::Activity tick() override {

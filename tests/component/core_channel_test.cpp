@@ -24,10 +24,11 @@ class Watcher final : public sim::Component {
     sim::In<int> in{*this, "in"};
     Cycles seen, unseen;
 
-    Watcher(sim::Context context, Cycle until) : Component(std::move(context)), until_(until) { wake_in(1); }
+    Watcher(sim::Context context, Cycle until) : Component(std::move(context)), until_(until) {}
 
   private:
     sim::Activity tick() override {
+        if (cycle() > until_) return sim::Activity::starved;
         (in.peek() != nullptr ? seen : unseen).push_back(cycle());
         if (cycle() < until_) return sim::Activity::busy;
         while (in.peek() != nullptr) in.pop();
@@ -91,15 +92,17 @@ TEST(Channel, CapacityCountsMessagesInFlight) {
 }
 
 TEST(Channel, RoomReturnsAtTheNextEdgeWhicheverTicksFirst) {
-    for (const bool sink_first : {false, true}) {
+    const auto cycles_sent = [](bool sink_first) {
         Rig rig;
-        auto sink = std::make_unique<Sink<int>>(rig.context(sink_first ? "sink" : "other"));
-        auto source = std::make_unique<Source<int>>(rig.context("source"), numbers(4));
-        auto second = std::make_unique<Sink<int>>(rig.context(sink_first ? "other" : "sink"));
-        sim::connect(source->out, (sink_first ? sink : second)->in, {.latency = 1, .width = 1, .capacity = 1});
+        auto first = sink_first ? std::make_unique<Sink<int>>(rig.context("sink")) : nullptr;
+        Source<int> source(rig.context("source"), numbers(4));
+        if (!first) first = std::make_unique<Sink<int>>(rig.context("sink"));
+        sim::connect(source.out, first->in, {.latency = 1, .width = 1, .capacity = 1});
         rig.simulation.run();
-        EXPECT_EQ(source->cycles(), (Cycles{0, 2, 4, 6}));
-    }
+        return source.cycles();
+    };
+    EXPECT_EQ(cycles_sent(false), (Cycles{0, 2, 4, 6}));
+    EXPECT_EQ(cycles_sent(true), (Cycles{0, 2, 4, 6}));
 }
 
 TEST(Channel, FullThroughputNeedsCapacityOfWidthTimesLatencyPlusOne) {
@@ -126,7 +129,7 @@ TEST(Channel, FullThroughputNeedsCapacityOfWidthTimesLatencyPlusOne) {
 class Careless final : public sim::Component {
   public:
     sim::Out<int> out{*this, "out"};
-    Careless(sim::Context context, int count) : Component(std::move(context)), count_(count) { wake_in(1); }
+    Careless(sim::Context context, int count) : Component(std::move(context)), count_(count) {}
 
   private:
     sim::Activity tick() override {
@@ -168,6 +171,7 @@ class Greedy final : public sim::Component {
 
   private:
     sim::Activity tick() override {
+        if (in.peek() == nullptr) return sim::Activity::starved;
         for (int i = 0; i < 3; ++i) in.pop();
         return sim::Activity::busy;
     }
@@ -192,6 +196,18 @@ TEST(Channel, ImpossibleLinksAreRefused) {
     EXPECT_TRUE(source.outputs().empty());
     sim::connect(source.out, sink.in, {});
     EXPECT_THROW(sim::connect(source.out, sink.in, {}), sim::InternalError);
+}
+
+TEST(Channel, UsingAnUnlinkedPortIsRefused) {
+    Rig rig;
+    Sink<int> sink(rig.context("sink"));
+    EXPECT_FALSE(sink.in.connected());
+    try {
+        rig.simulation.run();
+        FAIL();
+    } catch (const sim::InternalError& error) {
+        EXPECT_NE(std::string(error.what()).find("sink.in is not linked"), std::string::npos) << error.what();
+    }
 }
 
 TEST(Channel, CountsWhatPassed) {

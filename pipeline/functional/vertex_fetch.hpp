@@ -21,11 +21,11 @@ namespace pipeline {
 class AttributeReader {
   public:
     AttributeReader(const Resources& resources, const VertexAttribute& attribute)
-        : first_(resources.buffers[attribute.buffer].bytes.data() + attribute.offset),
-          stride_(attribute.stride),
-          type_(attribute.type),
-          components_(attribute.components),
-          normalized_(attribute.normalized) {}
+        : AttributeReader(resources.buffers[attribute.buffer].bytes.data(), attribute) {}
+    /// From the buffer that starts at `buffer`, whatever number the attribute gives.
+    AttributeReader(const std::byte* buffer, const VertexAttribute& attribute)
+        : first_(buffer + attribute.offset), stride_(attribute.stride), type_(attribute.type),
+          components_(attribute.components), normalized_(attribute.normalized) {}
 
     glm::vec4 operator()(std::uint32_t element) const {
         const std::byte* source = first_ + element * stride_;

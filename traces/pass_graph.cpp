@@ -115,7 +115,7 @@ Needs needs_of(const Frame& frame, const Offers& offers) {
     for (const Pass& pass : frame.passes) {
         needs.colours |= pass.colour || (pass.kbuffer && frame.program->needs_colour());
         needs.depth |= pass.depth.test || pass.depth.write;
-        needs.early_depth |= pass.depth.test;
+        needs.early_depth |= pass.depth.test && !pass.depth.write;
         needs.colour_surface |= contains(pass.writes, colour_surface) || contains(pass.reads, colour_surface);
         needs.kbuffer |= pass.kbuffer;
     }
@@ -149,7 +149,7 @@ void list_left_out(std::vector<LeftOut>& list, const Needs& needs, const Offers&
     add(needs.alpha_test, "alpha test", "no drawn material tests alpha");
     add(needs.colours, "colours", no_colours);
     add(needs.depth, "depth surface", "no pass tests or writes depth");
-    add(needs.early_depth, "early depth test", "no pass tests depth");
+    add(needs.early_depth, "early depth test", "no pass tests a depth surface that it does not write");
     add(needs.colour_surface, "colour surface", "no pass writes it");
     add(needs.kbuffer, "k-buffer", "no pass runs a modify program");
 }

@@ -1,0 +1,74 @@
+// D2: a programmable blender in the ROP. Fragments leave the reorder buffer in primitive order, and the blender reads,
+// modifies and writes the pixel in the ROP's tile cache.
+//
+// Source: specification 004, section 7.3; Bavoil 2007, section 4.3.1.
+#include "models/kbuffers/library.hpp"
+#include "sim/described_json.hpp"
+
+namespace models {
+
+namespace {
+
+using namespace pipeline;
+
+struct BlenderParams {
+    BlendInterlock interlock  = BlendInterlock::stall;
+    std::uint32_t  lanes      = 4;
+    std::uint32_t  port_bytes = 32;
+    std::uint32_t  latency    = 16;
+
+    static constexpr auto fields() {
+        using P = BlenderParams;
+        return std::tuple{
+            sim::field<&P::interlock>("What happens to a quad whose pixel is inside the blender"),
+            sim::field<&P::lanes>("Scalar operations per cycle of one ROP's blender").unit("operations").range(1, 1024),
+            sim::field<&P::port_bytes>("Bytes per cycle between one ROP's blender and the tile cache").unit("bytes").range(1, 4096),
+            sim::field<&P::latency>("From read to write (L_b)").unit("cycles").range(1, 1000)};
+    }
+};
+static_assert(sim::fully_described<BlenderParams>);
+
+class Blender final : public KBufferDesign {
+  public:
+    static constexpr std::string_view name = "blender";
+    static constexpr std::string_view text = "D2: programmable blender in the ROP, behind the reorder buffer, with interlock";
+
+    explicit Blender(const BlenderParams& params) : params_(params) {}
+
+    std::string_view id() const override { return name; }
+    std::string_view summary() const override { return text; }
+    std::string      refuses(const ModifyProgram& program) const override {
+        return program.needs_texture() ? "it fetches a table, which a blender cannot" : "";
+    }
+    KBufferPlan plan(const ModifyProgram&, const View&) const override {
+        KBufferPlan plan;
+        plan.site    = UpdateSite::blender;
+        plan.blender = {params_.interlock, params_.lanes, params_.port_bytes, params_.latency};
+        return plan;
+    }
+    nlohmann::ordered_json parameters() const override { return sim::to_json(params_); }
+    // Per ROP: the values inside the pipeline (entries and fragment), and one address comparator per stage.
+    nlohmann::ordered_json area(const ModifyProgram& program, const View&, std::uint32_t) const override {
+        return {{"added_state_bits", std::uint64_t{params_.latency} * program.bytes_per_pixel() * 8},
+                {"added_comparators", params_.interlock == BlendInterlock::none ? 0 : params_.latency},
+                {"added_alu_lanes", params_.lanes},
+                {"per", "ROP"}};
+    }
+
+  private:
+    BlenderParams params_;
+};
+
+} // namespace
+
+DesignInfo blender_design() {
+    return {Blender::name, Blender::text,
+            [](sim::Config& config) -> std::unique_ptr<KBufferDesign> {
+                BlenderParams params;
+                config.read(Blender::name, params);
+                return std::make_unique<Blender>(params);
+            },
+            [] { return sim::describe<BlenderParams>(Blender::name); }};
+}
+
+} // namespace models

@@ -1,0 +1,84 @@
+// D0: the k-buffer on existing hardware. The shader reads its pixel as a texture, modifies it, and stores all entries
+// through the reorder buffer; nothing protects the interval in between.
+//
+// Source: specification 004, section 7.1; Bavoil 2007, sections 4.3.1 and 4.3.2.
+#include "models/kbuffers/library.hpp"
+#include "sim/described_json.hpp"
+
+namespace models {
+
+namespace {
+
+using namespace pipeline;
+
+struct ExistingParams {
+    Visibility       visibility      = Visibility::writeback;
+    TextureCoherence tex_coherence   = TextureCoherence::invalidate_on_draw;
+    bool             bypass_l1       = false;
+    bool             atomic_reads    = false;
+    std::uint32_t    flush_triangles = 0;
+    bool             flush_draws     = false;
+    bool             drain           = true;
+    bool             writeback       = true;
+    bool             invalidate      = true;
+
+    static constexpr auto fields() {
+        using P = ExistingParams;
+        return std::tuple{
+            sim::field<&P::visibility>("When a store becomes visible to a texture read"),
+            sim::field<&P::tex_coherence>("What drops stale k-buffer lines from the texture caches"),
+            sim::field<&P::bypass_l1>("k-buffer reads do not look into the texture caches"),
+            sim::field<&P::atomic_reads>("One read returns all render targets of a pixel at one instant (no torn reads, H4)"),
+            sim::field<&P::flush_triangles>("Flush after this many triangles; 0 = never").unit("triangles"),
+            sim::field<&P::flush_draws>("Flush at every draw boundary"),
+            sim::field<&P::drain>("A flush waits until all quads in flight have stored"),
+            sim::field<&P::writeback>("A flush makes all stores observable"),
+            sim::field<&P::invalidate>("A flush drops the k-buffer lines of the texture caches")};
+    }
+};
+static_assert(sim::fully_described<ExistingParams>);
+
+class Existing final : public KBufferDesign {
+  public:
+    static constexpr std::string_view name = "existing";
+    static constexpr std::string_view text = "D0: shader reads and writes the k-buffer as textures, unprotected";
+
+    explicit Existing(const ExistingParams& params) : params_(params) {}
+
+    std::string_view id() const override { return name; }
+    std::string_view summary() const override { return text; }
+    std::string      refuses(const ModifyProgram&) const override { return {}; }
+
+    KBufferPlan plan(const ModifyProgram&, const View&) const override {
+        KBufferPlan plan;
+        plan.site                = UpdateSite::fragment_shader;
+        plan.shader.visibility   = params_.visibility;
+        plan.shader.coherence    = params_.tex_coherence;
+        plan.shader.bypass_l1    = params_.bypass_l1;
+        plan.shader.atomic_reads = params_.atomic_reads;
+        plan.shader.flush        = {params_.flush_triangles, params_.flush_draws, params_.drain, params_.writeback,
+                                    params_.invalidate};
+        return plan;
+    }
+    nlohmann::ordered_json parameters() const override { return sim::to_json(params_); }
+    nlohmann::ordered_json area(const ModifyProgram&, const View&, std::uint32_t) const override {
+        return {{"added_state_bits", 0}, {"added_comparators", 0}, {"added_alu_lanes", 0}};
+    }
+
+  private:
+    ExistingParams params_;
+};
+
+} // namespace
+
+DesignInfo existing_design() {
+    return {Existing::name, Existing::text,
+            [](sim::Config& config) -> std::unique_ptr<KBufferDesign> {
+                ExistingParams params;
+                config.read(Existing::name, params);
+                return std::make_unique<Existing>(params);
+            },
+            [] { return sim::describe<ExistingParams>(Existing::name); }};
+}
+
+} // namespace models

@@ -1,0 +1,387 @@
+#include "pipeline/fragment/fragment_pipeline.hpp"
+
+#include <algorithm>
+#include <bit>
+
+namespace pipeline {
+
+namespace {
+
+constexpr std::uint32_t ceil_div(std::uint32_t value, std::uint32_t by) {
+    return (value + by - 1) / by;
+}
+
+// Peeled layers lie in an address range of their own, in 64-byte lines of 4x4 depths.
+constexpr std::uint64_t layer_lines = std::uint64_t{1} << 40U;
+
+} // namespace
+
+FragmentPipeline::FragmentPipeline(sim::Context context, std::uint16_t pipe, const FragmentParams& params,
+                                   const TextureParams& texture, const PassContext& pass, std::uint32_t partitions,
+                                   const ShaderSite* site, QuadPayloads* payloads)
+    : Component(std::move(context)), pipe_(pipe), params_(params), texture_(texture), pass_(&pass), site_(site),
+      payloads_(payloads), program_targets_(site != nullptr ? pass.program->targets() : 0),
+      line_targets_(site == nullptr ? 0 : site->atomic_reads ? program_targets_ : 1),
+      l1_(texture, site != nullptr && !site->bypass_l1 ? line_targets_ : 0), threads_(params.quads_in_flight),
+      block_chain_(site != nullptr ? pass.layout.blocks() : 0, nobody),
+      line_chain_(texture.l1_bytes / TextureParams::line_bytes + 1, nobody), shading_(params.quads_in_flight),
+      finishing_(params.quads_in_flight), unsent_(params.quads_in_flight) {
+    for (std::uint32_t thread = params.quads_in_flight; thread > 0; --thread)
+        free_threads_.push_back(static_cast<std::uint16_t>(thread - 1));
+    thread_limit_ = params.quads_in_flight;
+    port_names_.reserve(std::size_t{3} * partitions);
+    for (std::uint32_t rop = 0; site != nullptr && rop < partitions; ++rop) {
+        reads_out.emplace_back(*this, port_names_.emplace_back("reads" + std::to_string(rop) + "_out"));
+        reads_in.emplace_back(*this, port_names_.emplace_back("reads" + std::to_string(rop) + "_in"));
+        if (site->coherence == TextureCoherence::invalidate_on_write)
+            invalidations_in.emplace_back(*this, port_names_.emplace_back("invalidations" + std::to_string(rop) + "_in"));
+    }
+}
+
+void FragmentPipeline::begin_pass(std::uint32_t registers_per_fragment) {
+    l1_.drop_kbuffer_lines();
+    draw_         = ~std::uint32_t{0};
+    thread_limit_ = std::clamp(params_.registers / std::max(registers_per_fragment, 1U), 1U, params_.quads_in_flight);
+}
+
+// A10; the exact rule breaks ties of depth by submission order, so that no layer is lost and none is repeated.
+bool FragmentPipeline::is_behind(float depth, QuadId quad, std::size_t pixel) const {
+    const DepthCode captured = pass_->behind->depth[pixel];
+    if (pass_->peel.rule == PeelRule::eps)
+        return static_cast<double>(depth) >= static_cast<double>(depth_value(pass_->depth_format, captured)) + pass_->peel.eps;
+    const DepthCode code = depth_code(pass_->depth_format, depth);
+    return code > captured || (code == captured && quad > pass_->behind->order[pixel]);
+}
+
+std::uint8_t FragmentPipeline::behind_layer(const QuadTask& task) const {
+    if (pass_->behind == nullptr) return task.mask;
+    const Quad&  quad = pass_->stream->quads[task.quad];
+    std::uint8_t mask = 0;
+    for (std::uint32_t pixel = 0; pixel < 4; ++pixel) {
+        if ((task.mask >> pixel & 1) == 0) continue;
+        const std::size_t at =
+            static_cast<std::size_t>(quad.y + pixel / 2) * pass_->layout.width + quad.x + pixel % 2;
+        if (is_behind(pass_->stream->depths[task.quad][pixel], task.quad, at))
+            mask = static_cast<std::uint8_t>(mask | 1U << pixel);
+    }
+    return mask;
+}
+
+void FragmentPipeline::start(const QuadTask& task) {
+    const std::uint16_t index = free_threads_.back();
+    free_threads_.pop_back();
+    Thread& thread = threads_[index];
+    thread         = {};
+    thread.task    = task;
+    const std::uint32_t draw = pass_->draw_of(task.quad);
+    if (site_ != nullptr && site_->coherence == TextureCoherence::invalidate_on_draw && draw != draw_ && draw_ != ~0U) {
+        l1_.drop_kbuffer_lines();
+        ++stats_.l1.invalidations;
+    }
+    draw_                          = draw;
+    const std::uint8_t before      = task.mask;
+    thread.task.mask               = behind_layer(task);
+    stats_.peel_rejects += static_cast<std::uint64_t>(std::popcount(before) - std::popcount(thread.task.mask));
+    std::uint32_t alu = ceil_div(std::max(pass_->shader_costs[draw].alu, 1U), params_.alu_per_clk);
+    // The program's scalar operations run four wide, for the four fragments of the quad side by side.
+    if (task.slot != no_slot) alu += ceil_div(pass_->program->cost().operations, 4 * params_.alu_per_clk);
+    issue_free_ = cycle() + alu;
+    stats_.issue_cycles += alu;
+    ++stats_.quads;
+    stats_.fragments += static_cast<std::uint64_t>(std::popcount(task.mask));
+    stats_.in_flight_max.note(params_.quads_in_flight - free_threads_.size());
+    fetch_textures(index);
+}
+
+// The 64-byte line of the quad's next read-only fetch: first the material's texture, then the peeled layer; ~0 = no more.
+std::uint64_t FragmentPipeline::fetch_line(const Thread& thread) const {
+    const bool textured = pass_->textures && !pass_->stream->texture_lines.empty() &&
+                          pass_->stream->texture_lines[thread.task.quad] != ~std::uint32_t{0};
+    if (thread.fetch == 0 && textured) return pass_->stream->texture_lines[thread.task.quad];
+    const bool layered = pass_->behind != nullptr;
+    if (layered && thread.fetch <= (textured ? 1 : 0)) {
+        const Quad& quad = pass_->stream->quads[thread.task.quad];
+        return layer_lines + pass_->layout.tile_of(quad.x, quad.y);
+    }
+    return ~std::uint64_t{0};
+}
+
+// Fetches one after the other; each costs texture unit time, and a miss the way to memory.
+void FragmentPipeline::fetch_textures(std::uint16_t index) {
+    Thread& thread = threads_[index];
+    for (;;) {
+        const std::uint64_t line = fetch_line(thread);
+        if (line == ~std::uint64_t{0}) break;
+        texture_free_ = std::max(texture_free_, cycle()) + texture_.cycles_per_fetch;
+        stats_.texture_cycles += texture_.cycles_per_fetch;
+        const std::uint32_t found = l1_.find_texture(line);
+        if (found != TextureCache::none && !l1_.pending(found)) {
+            ++stats_.l1.texture_hits;
+            ++thread.fetch;
+            continue;
+        }
+        if (found != TextureCache::none) { // joins the pending miss
+            ++stats_.l1.texture_hits;
+            thread.next        = line_chain_[found];
+            line_chain_[found] = index;
+            return;
+        }
+        ++stats_.l1.texture_misses;
+        thread.line = l1_.reserve_texture(line);
+        unsent_.push(index);
+        return;
+    }
+    shaded(index);
+}
+
+void FragmentPipeline::texture_arrived(std::uint16_t index) {
+    Thread& thread = threads_[index];
+    ++thread.fetch;
+    if (thread.line != TextureCache::none) {
+        l1_.filled(thread.line);
+        std::uint16_t waiting     = std::exchange(line_chain_[thread.line], nobody);
+        thread.line               = TextureCache::none;
+        while (waiting != nobody) {
+            const std::uint16_t next = std::exchange(threads_[waiting].next, nobody);
+            ++threads_[waiting].fetch;
+            fetch_textures(waiting);
+            waiting = next;
+        }
+    }
+    fetch_textures(index);
+}
+
+// All read-only fetches are there: the ALU part follows, in order of arrival.
+void FragmentPipeline::shaded(std::uint16_t index) {
+    const Thread& thread = threads_[index];
+    sim::Cycle    ready  = std::max(cycle(), texture_free_) + params_.latency + (thread.fetch > 0 ? texture_.hit_latency : 0);
+    if (!shading_.empty()) ready = std::max(ready, shading_.back().ready);
+    shading_.push({index, ready});
+}
+
+void FragmentPipeline::run_program(const QuadTask& task) {
+    const FragmentStream& stream = *pass_->stream;
+    float                 entry[4];
+    for (std::uint32_t pixel = 0; pixel < 4; ++pixel) {
+        if ((task.mask >> pixel & 1) == 0) continue;
+        const float* rgba = stream.colours.empty() ? nullptr : &stream.colours[task.quad][pixel].x;
+        pass_->program->make_entry(rgba, stream.depths[task.quad][pixel], entry);
+        pass_->program->insert(payloads_->values(task.slot, pixel), entry);
+    }
+}
+
+void FragmentPipeline::after_values(std::uint16_t index) {
+    const QuadTask& task = threads_[index].task;
+    if (task.slot != no_slot) run_program(task);
+    const sim::Cycle ready = cycle() + 1;
+    finishing_.push({index, finishing_.empty() ? ready : std::max(ready, finishing_.back().ready)});
+}
+
+bool FragmentPipeline::finish_one() {
+    if (finishing_.empty() || finishing_.front().ready > cycle() || !done_out.ready()) return false;
+    const std::uint16_t index = finishing_.front().thread;
+    finishing_.pop();
+    done_out.send({threads_[index].task.sequence, threads_[index].task.mask});
+    free_threads_.push_back(index);
+    return true;
+}
+
+// L1 lookup of every render target of the quad's block: hits are sampled now, pending lines joined, the rest asked for.
+void FragmentPipeline::lookup_targets(std::uint16_t index) {
+    Thread&             thread = threads_[index];
+    const QuadTask&     task   = thread.task;
+    const Quad&         quad   = pass_->stream->quads[task.quad];
+    const std::uint32_t parts  = program_targets_ / line_targets_;
+    const std::uint64_t part_mask = line_targets_ == program_targets_ ? all_targets() : 1;
+    thread.block                  = pass_->layout.block_of(quad.x, quad.y);
+    thread.generation             = l1_.generation();
+    thread.own                    = all_targets();
+    texture_free_ = std::max(texture_free_, cycle()) + texture_.cycles_per_rgba32f * program_targets_;
+    stats_.texture_cycles += texture_.cycles_per_rgba32f * program_targets_;
+    ++stats_.kbuffer_reads;
+    if (site_->bypass_l1 || !l1_.enabled()) {
+        stats_.l1.kbuffer_misses += parts;
+        return;
+    }
+    std::uint64_t pending = 0;
+    for (std::uint16_t other = block_chain_[thread.block]; other != nobody; other = threads_[other].next)
+        if (threads_[other].generation == thread.generation) pending |= threads_[other].own;
+    for (std::uint32_t part = 0; part < parts; ++part) {
+        const std::uint64_t targets = part_mask << part;
+        const std::uint32_t line    = l1_.find_kbuffer(thread.block, part);
+        if (line == TextureCache::none) {
+            const bool join = (pending & targets) != 0;
+            if (join) thread.merged |= targets;
+            ++(join ? stats_.l1.kbuffer_merged : stats_.l1.kbuffer_misses);
+            continue;
+        }
+        ++stats_.l1.kbuffer_hits;
+        thread.own &= ~targets;
+        for (std::uint32_t pixel = 0; pixel < 4; ++pixel)
+            for (std::uint32_t n = 0; n < line_targets_; ++n)
+                payloads_->sample(task.slot, pixel, part * line_targets_ + n, l1_.data(line, pixel, n),
+                                  l1_.version(line, pixel), cycle());
+    }
+    thread.own &= ~thread.merged;
+}
+
+bool FragmentPipeline::send_read(std::uint16_t index) {
+    Thread&     thread = threads_[index];
+    const Quad& quad   = pass_->stream->quads[thread.task.quad];
+    auto&       port   = reads_out[pass_->layout.partition_of(quad.x, quad.y)];
+    if (!port.ready()) return false;
+    port.send({thread.block, thread.task.slot, thread.own, pass_->draw_of(thread.task.quad), pipe_, index});
+    return true;
+}
+
+bool FragmentPipeline::read_kbuffer_of_next() {
+    bool progress = false;
+    if (!read_in_hand_ && !shading_.empty() && shading_.front().ready <= cycle()) {
+        const std::uint16_t index = shading_.front().thread;
+        const bool          reads = threads_[index].task.slot != no_slot;
+        if (reads && texture_free_ > cycle()) return false;
+        shading_.pop();
+        progress = true;
+        if (!reads) {
+            after_values(index);
+            return true;
+        }
+        lookup_targets(index);
+        Thread& thread = threads_[index];
+        if ((thread.own | thread.merged) == 0) {
+            after_values(index);
+            return true;
+        }
+        thread.next                = block_chain_[thread.block];
+        block_chain_[thread.block] = index;
+        if (thread.own != 0) read_in_hand_ = index;
+    }
+    if (read_in_hand_ && send_read(*read_in_hand_)) {
+        read_in_hand_.reset();
+        progress = true;
+    }
+    return progress;
+}
+
+void FragmentPipeline::unchain(std::uint16_t index) {
+    std::uint16_t* link = &block_chain_[threads_[index].block];
+    while (*link != index) link = &threads_[*link].next;
+    *link                = threads_[index].next;
+    threads_[index].next = nobody;
+}
+
+void FragmentPipeline::fill_l1(const Thread& thread, std::uint64_t targets) {
+    if (site_->bypass_l1 || !l1_.enabled() || thread.generation != l1_.generation()) return;
+    for (std::uint32_t part = 0; part < program_targets_ / line_targets_; ++part) {
+        const std::uint32_t first = part * line_targets_;
+        if ((targets >> first & 1) == 0) continue;
+        const std::uint32_t line = l1_.put_kbuffer(thread.block, part);
+        if (line == TextureCache::none) continue;
+        for (std::uint32_t pixel = 0; pixel < 4; ++pixel) {
+            const float* from = payloads_->values(thread.task.slot, pixel) + first * 4;
+            std::copy(from, from + line_targets_ * 4, l1_.data(line, pixel, 0));
+            l1_.version(line, pixel) = payloads_->version(thread.task.slot, pixel, first);
+        }
+    }
+}
+
+void FragmentPipeline::give_to_waiting(std::uint16_t from, std::uint64_t targets) {
+    const Thread& source = threads_[from];
+    for (std::uint16_t other = block_chain_[source.block]; other != nobody;) {
+        Thread&             thread = threads_[other];
+        const std::uint16_t next   = thread.next;
+        const std::uint64_t shared = thread.generation == source.generation ? thread.merged & targets : 0;
+        for (std::uint64_t left = shared; left != 0; left &= left - 1) {
+            const auto target = static_cast<std::uint32_t>(std::countr_zero(left));
+            for (std::uint32_t pixel = 0; pixel < 4; ++pixel)
+                payloads_->sample(thread.task.slot, pixel, target, payloads_->values(source.task.slot, pixel) + target * 4,
+                                  payloads_->version(source.task.slot, pixel, target),
+                                  (*payloads_)[source.task.slot].last_read);
+        }
+        thread.merged &= ~shared;
+        if (shared != 0 && (thread.own | thread.merged) == 0) {
+            unchain(other);
+            after_values(other);
+        }
+        other = next;
+    }
+}
+
+void FragmentPipeline::kbuffer_arrived(std::uint16_t index) {
+    Thread&             thread  = threads_[index];
+    const std::uint64_t targets = std::exchange(thread.own, 0);
+    fill_l1(thread, targets);
+    give_to_waiting(index, targets);
+    if (thread.merged != 0) return;
+    unchain(index);
+    after_values(index);
+}
+
+bool FragmentPipeline::take_answers() {
+    bool progress = false;
+    if (textures_in.connected())
+        while (textures_in.peek() != nullptr) {
+            texture_arrived(static_cast<std::uint16_t>(textures_in.receive().tag));
+            progress = true;
+        }
+    for (auto& port : reads_in)
+        while (port.peek() != nullptr) {
+            kbuffer_arrived(port.receive().thread);
+            progress = true;
+        }
+    for (auto& port : invalidations_in)
+        while (port.peek() != nullptr) {
+            l1_.drop_kbuffer_block(port.receive().block, program_targets_ / line_targets_);
+            ++stats_.l1.invalidations;
+            progress = true;
+        }
+    return progress;
+}
+
+bool FragmentPipeline::issue_next(bool& blocked) {
+    const QuadTask* input = quads_in.peek();
+    if (input == nullptr) return false;
+    if (input->kind == QuadKind::invalidate) {
+        l1_.drop_kbuffer_lines();
+        ++stats_.l1.invalidations;
+        quads_in.pop();
+        return true;
+    }
+    blocked = params_.quads_in_flight - free_threads_.size() >= thread_limit_;
+    if (blocked || issue_free_ > cycle()) return false;
+    start(quads_in.receive());
+    return true;
+}
+
+sim::Cycle FragmentPipeline::next_event() const {
+    sim::Cycle next = ~sim::Cycle{0};
+    auto       note = [&next, this](sim::Cycle at) {
+        if (at > cycle()) next = std::min(next, at);
+    };
+    if (!finishing_.empty()) note(finishing_.front().ready);
+    if (!shading_.empty()) note(std::max(shading_.front().ready, texture_free_));
+    note(issue_free_);
+    return next;
+}
+
+sim::Activity FragmentPipeline::tick() {
+    bool progress = take_answers();
+    progress |= finish_one();
+    progress |= read_kbuffer_of_next();
+    bool full = false;
+    progress |= issue_next(full);
+    if (!unsent_.empty() && textures_out.ready()) {
+        const Thread&       thread = threads_[unsent_.front()];
+        const std::uint64_t line   = fetch_line(thread);
+        textures_out.send({line * TextureParams::line_bytes, TextureParams::line_bytes, unsent_.front(),
+                           pass_->draw_of(thread.task.quad), MemoryClient::texture, false});
+        unsent_.pop();
+        progress = true;
+    }
+    if (progress) return sim::Activity::busy;
+    if (const sim::Cycle next = next_event(); next != ~sim::Cycle{0}) wake_at(next);
+    if (free_threads_.size() == params_.quads_in_flight) return sim::Activity::starved;
+    return read_in_hand_ ? sim::Activity::blocked : sim::Activity::memory;
+}
+
+} // namespace pipeline

@@ -1,0 +1,150 @@
+// A quad pipeline: shades quads, many in flight, and reads textures, peeled layers and (on existing hardware) the k-buffer.
+//
+// Modelled: W quads in flight, fewer when the shader's registers run out; ALU issue rate; one texture unit with its L1;
+// pending lines are merged; misses go to memory (textures) or to the ROP partition that owns the pixel (k-buffer); results
+// leave one per cycle, out of order. A k-buffer value is sampled when its L1 lookup hits, or when the memory side serves it.
+// Not modelled: individual instructions; branches.
+// Source: specification 004, sections 7, 7.1 (t_disp, t_rd, t_done; read value rule).
+#pragma once
+
+#include "pipeline/fixed_queue.hpp"
+#include "pipeline/fragment/messages.hpp"
+#include "pipeline/fragment/pass_context.hpp"
+#include "pipeline/fragment/quad_payloads.hpp"
+#include "pipeline/fragment/texture_cache.hpp"
+#include "pipeline/memory/messages.hpp"
+#include "sim/channel.hpp"
+#include "sim/described.hpp"
+#include "sim/stats.hpp"
+
+#include <deque>
+#include <optional>
+#include <vector>
+
+namespace pipeline {
+
+struct FragmentParams {
+    std::uint32_t pipes           = 6;
+    std::uint32_t quads_in_flight = 256;
+    std::uint32_t alu_per_clk     = 2;
+    std::uint32_t latency         = 30;
+    std::uint32_t registers       = 4096;
+
+    static constexpr auto fields() {
+        using P = FragmentParams;
+        return std::tuple{
+            sim::field<&P::pipes>("Quad pipelines, four fragments wide (P)").unit("pipes").range(1, 64),
+            sim::field<&P::quads_in_flight>("Quads in flight per pipe (W)").unit("quads").range(1, 4096),
+            sim::field<&P::alu_per_clk>("Vector instructions issued per cycle for a quad").unit("instructions").range(1, 64),
+            sim::field<&P::latency>("Cycles through an empty pipe, without texture reads").unit("cycles").range(1, 10000),
+            sim::field<&P::registers>("128-bit registers per fragment lane, shared by the quads in flight").unit("registers").range(1, 1 << 20)};
+    }
+};
+static_assert(sim::fully_described<FragmentParams>);
+
+struct FragmentPipelineStats {
+    sim::Counter quads, fragments, issue_cycles, texture_cycles, peel_rejects, kbuffer_reads;
+    sim::HighWater    in_flight_max;
+    TextureCacheStats l1;
+
+    static constexpr auto fields() {
+        using S = FragmentPipelineStats;
+        return std::tuple{
+            sim::field<&S::quads>("Quads shaded").unit("quads"),
+            sim::field<&S::fragments>("Living fragments shaded").unit("fragments"),
+            sim::field<&S::issue_cycles>("Cycles the ALUs were reserved").unit("cycles"),
+            sim::field<&S::texture_cycles>("Cycles the texture unit was reserved").unit("cycles"),
+            sim::field<&S::peel_rejects>("Fragments rejected as not behind the previous layer").unit("fragments"),
+            sim::field<&S::kbuffer_reads>("Quads that read the k-buffer").unit("quads"),
+            sim::field<&S::in_flight_max>("Most quads in flight").unit("quads"),
+            sim::field<&S::l1>("Texture L1 cache")};
+    }
+};
+static_assert(sim::fully_described<FragmentPipelineStats>);
+
+class FragmentPipeline final : public sim::Component {
+  public:
+    sim::In<QuadTask>                     quads_in{*this, "quads_in"};
+    sim::Out<Completion>                  done_out{*this, "done_out"};
+    sim::Out<MemoryRequest>               textures_out{*this, "textures_out"}; ///< linked when textures are read
+    sim::In<MemoryResponse>               textures_in{*this, "textures_in"};
+    std::deque<sim::Out<KBufferRead>>     reads_out;        ///< one per ROP partition, when the shader reads the k-buffer
+    std::deque<sim::In<KBufferReadDone>>  reads_in;
+    std::deque<sim::In<LineInvalidation>> invalidations_in; ///< one per partition, when this cache is kept coherent
+
+    /// @param site null when the shader does not read the k-buffer
+    /// @param payloads null likewise
+    FragmentPipeline(sim::Context context, std::uint16_t pipe, const FragmentParams& params, const TextureParams& texture,
+                     const PassContext& pass, std::uint32_t partitions, const ShaderSite* site, QuadPayloads* payloads);
+
+    const FragmentPipelineStats& stats() const { return stats_; }
+    /// Drops all k-buffer lines and sets the quads in flight from the registers of the pass; between passes.
+    void begin_pass(std::uint32_t registers_per_fragment);
+
+  private:
+    static constexpr std::uint16_t nobody = 0xFFFF;
+
+    struct Thread {
+        QuadTask      task;
+        std::uint64_t own        = 0; ///< render targets asked for and not answered
+        std::uint64_t merged     = 0; ///< render targets another thread has asked for
+        std::uint32_t block      = 0;
+        std::uint32_t generation = 0;
+        std::uint32_t line       = TextureCache::none; ///< texture line this thread is filling
+        std::uint8_t  fetch      = 0;                  ///< next of the quad's read-only fetches
+        std::uint16_t next       = nobody;             ///< in the chain of threads that wait for one block or line
+    };
+    struct Timed {
+        std::uint16_t thread = 0;
+        sim::Cycle    ready  = 0;
+    };
+
+    sim::Activity tick() override;
+    bool          take_answers();
+    bool          finish_one();
+    bool          read_kbuffer_of_next();
+    bool          issue_next(bool& blocked);
+    void          start(const QuadTask& task);
+    void          fetch_textures(std::uint16_t thread);
+    std::uint64_t fetch_line(const Thread& thread) const;
+    void          texture_arrived(std::uint16_t thread);
+    void          shaded(std::uint16_t thread);
+    void          after_values(std::uint16_t thread);
+    void          lookup_targets(std::uint16_t index);
+    bool          send_read(std::uint16_t index);
+    void          kbuffer_arrived(std::uint16_t index);
+    void          give_to_waiting(std::uint16_t from, std::uint64_t targets);
+    void          fill_l1(const Thread& thread, std::uint64_t targets);
+    void          unchain(std::uint16_t index);
+    void          run_program(const QuadTask& task);
+    bool          is_behind(float depth, QuadId quad, std::size_t pixel) const;
+    std::uint8_t  behind_layer(const QuadTask& task) const;
+    std::uint64_t all_targets() const { return program_targets_ == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << program_targets_) - 1; }
+    sim::Cycle    next_event() const;
+
+    std::uint16_t              pipe_;
+    FragmentParams             params_;
+    TextureParams              texture_;
+    const PassContext*         pass_;
+    const ShaderSite*          site_;
+    QuadPayloads*              payloads_;
+    std::uint32_t              program_targets_ = 0;
+    std::uint32_t              line_targets_    = 0;
+    std::vector<std::string>   port_names_;
+    TextureCache               l1_;
+    FragmentPipelineStats      stats_;
+    std::vector<Thread>        threads_;
+    std::vector<std::uint16_t> free_threads_;
+    std::uint32_t              thread_limit_ = 0;
+    std::vector<std::uint16_t> block_chain_; ///< first thread that waits for a block
+    std::vector<std::uint16_t> line_chain_;  ///< first thread that waits for a texture line of L1
+    FixedQueue<Timed>          shading_;     ///< in the ALUs, in order
+    FixedQueue<Timed>          finishing_;   ///< values complete, result on its way out
+    FixedQueue<std::uint16_t>  unsent_;      ///< texture requests the link had no room for
+    std::optional<std::uint16_t> read_in_hand_; ///< looked up, request not sent yet
+    sim::Cycle                 issue_free_   = 0;
+    sim::Cycle                 texture_free_ = 0;
+    std::uint32_t              draw_         = ~std::uint32_t{0}; ///< of the youngest quad, for invalidate_on_draw
+};
+
+} // namespace pipeline

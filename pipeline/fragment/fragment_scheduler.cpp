@@ -1,0 +1,232 @@
+#include "pipeline/fragment/fragment_scheduler.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <utility>
+
+namespace pipeline {
+
+namespace {
+constexpr std::uint64_t progress_step = 4096;
+} // namespace
+
+FragmentScheduler::FragmentScheduler(sim::Context context, std::uint32_t pipes, std::uint32_t partitions,
+                                     const PassContext& pass, SchedulingPlan& plan, const FlushRule& flush,
+                                     QuadPayloads* payloads, std::atomic<std::uint64_t>* progress)
+    : Component(std::move(context)), pass_(&pass), plan_(&plan), flush_(flush), payloads_(payloads),
+      progress_(progress), tracked_(payloads != nullptr || plan.guard != nullptr) {
+    port_names_.reserve(pipes + partitions);
+    for (std::uint32_t pipe = 0; pipe < pipes; ++pipe)
+        pipes_out.emplace_back(*this, port_names_.emplace_back("pipe" + std::to_string(pipe) + "_out"));
+    for (std::uint32_t rop = 0; tracked_ && rop < partitions; ++rop)
+        commits_in.emplace_back(*this, port_names_.emplace_back("commits" + std::to_string(rop) + "_in"));
+    if (plan_->guard != nullptr) {
+        waiting_per_key_.resize(plan_->guard->keys());
+        key_seen_.resize(plan_->guard->keys());
+    }
+}
+
+void FragmentScheduler::begin_pass() {
+    pixel_order_.assign(static_cast<std::size_t>(pass_->layout.width + 1) * (pass_->layout.height + 1), 0);
+    batch_ = ~std::uint32_t{0};
+}
+
+bool FragmentScheduler::take_commits() {
+    bool progress = false;
+    for (sim::In<Commit>& port : commits_in) {
+        while (port.peek() != nullptr) {
+            const Commit commit = port.receive();
+            progress            = true;
+            if (commit.kind == QuadKind::writeback) {
+                ++acknowledged_;
+                continue;
+            }
+            if (plan_->guard != nullptr) plan_->guard->release(pass_->stream->quads[commit.quad], commit.mask);
+            if (commit.slot != no_slot) {
+                stats_.service_interval.note(cycle() - (*payloads_)[commit.slot].dispatched);
+                payloads_->give_back(commit.slot);
+            }
+            --in_flight_;
+            rescan_ = true;
+        }
+    }
+    return progress;
+}
+
+bool FragmentScheduler::choose_pipe(const Quad& quad) {
+    const auto pipes = static_cast<std::uint32_t>(pipes_out.size());
+    if (plan_->policy == DispatchPolicy::tile_affinity) {
+        chosen_pipe_ = (quad.x / 8U + 3U * (quad.y / 8U)) % pipes;
+        return pipes_out[chosen_pipe_].ready();
+    }
+    for (std::uint32_t n = 0; n < pipes; ++n) {
+        chosen_pipe_ = (next_pipe_ + n) % pipes;
+        if (pipes_out[chosen_pipe_].ready()) return true;
+    }
+    return false;
+}
+
+bool FragmentScheduler::can_dispatch(const QuadTask& task) {
+    const Quad& quad = pass_->stream->quads[task.quad];
+    if (payloads_ != nullptr && touches_kbuffer(task) && !payloads_->available()) {
+        ++stats_.slot_waits;
+        return false;
+    }
+    return order_out.ready() && choose_pipe(quad);
+}
+
+void FragmentScheduler::count_order(QuadTask& task) {
+    const Quad& quad = pass_->stream->quads[task.quad];
+    for (std::uint32_t pixel = 0; pixel < 4; ++pixel) {
+        if ((task.mask >> pixel & 1) == 0) continue;
+        const std::size_t at = static_cast<std::size_t>(quad.y + pixel / 2) * pass_->layout.width + quad.x + pixel % 2;
+        task.order[pixel]    = pixel_order_[at]++;
+    }
+}
+
+void FragmentScheduler::dispatch(QuadTask task, bool guarded) {
+    const Quad& quad = pass_->stream->quads[task.quad];
+    if (payloads_ != nullptr && touches_kbuffer(task)) {
+        task.slot                           = payloads_->take();
+        (*payloads_)[task.slot].dispatched = cycle();
+    }
+    if (guarded) plan_->guard->acquire(quad, task.mask);
+    if (tracked_ && touches_kbuffer(task)) ++in_flight_;
+    task.sequence = sequence_++;
+    ++stats_.quads;
+    if (progress_ != nullptr && stats_.quads % progress_step == 0)
+        progress_->fetch_add(progress_step, std::memory_order_relaxed);
+    stats_.fragments += static_cast<std::uint64_t>(std::popcount(task.mask));
+    order_out.send(task);
+    next_pipe_ = (chosen_pipe_ + 1) % static_cast<std::uint32_t>(pipes_out.size());
+    pipes_out[chosen_pipe_].send(task);
+}
+
+bool FragmentScheduler::wake_waiting() {
+    if (side_buffer_.empty() || !rescan_) return false;
+    bool          progress = false;
+    std::uint32_t woken    = 0;
+    ++epoch_;
+    rescan_ = false;
+    for (std::size_t at = 0; at < side_buffer_.size(); ++at) {
+        const Waiting& waiting = side_buffer_[at];
+        const Quad&    quad    = pass_->stream->quads[waiting.task.quad];
+        const auto     key     = plan_->guard->key(quad);
+        if (std::exchange(key_seen_[key], epoch_) == epoch_ && plan_->order_rule) continue; // an older quad of this key goes first
+        if (plan_->guard->check(quad, waiting.task.mask) != Conflict::none) continue;
+        if (woken == plan_->wakes || !can_dispatch(waiting.task)) {
+            rescan_ = true;
+            break;
+        }
+        stats_.residence.note(cycle() - waiting.since);
+        --waiting_per_key_[key];
+        dispatch(waiting.task, true);
+        side_buffer_.erase(side_buffer_.begin() + static_cast<std::ptrdiff_t>(at));
+        ++woken;
+        progress = true;
+        // Restart the order test: the quad behind the one that left may now be the oldest of its key.
+        ++epoch_;
+        at = static_cast<std::size_t>(-1);
+    }
+    return progress;
+}
+
+bool FragmentScheduler::at_batch_boundary(const QuadTask& task) const {
+    if (!flush_.active() || pass_->end == FragmentEnd::depth_colour) return false;
+    const std::uint32_t triangle = pass_->stream->quads[task.quad].triangle;
+    const std::uint32_t batch =
+        flush_.every_triangles != 0 ? triangle / flush_.every_triangles : pass_->stream->triangles[triangle].draw;
+    return batch_ != ~std::uint32_t{0} && batch != batch_;
+}
+
+// Drain, then command write-back and invalidation in band, then wait for the ROPs' answers. Without `drain` the commands
+// follow the quads already dispatched, and later quads follow at once.
+bool FragmentScheduler::advance_flush(bool& progress) {
+    if (flush_state_ == FlushState::draining) {
+        if (flush_.drain && in_flight_ != 0) return false;
+        flush_state_ = FlushState::commanding;
+    }
+    if (flush_state_ == FlushState::commanding) {
+        QuadTask command;
+        if (flush_.writeback && !writeback_sent_) {
+            if (!order_out.ready()) return false;
+            command.kind     = QuadKind::writeback;
+            command.sequence = sequence_++;
+            order_out.send(command);
+            writeback_sent_ = true;
+        }
+        command.kind = QuadKind::invalidate;
+        for (; flush_.invalidate && invalidates_sent_ < pipes_out.size(); ++invalidates_sent_) {
+            if (!pipes_out[invalidates_sent_].ready()) return false;
+            pipes_out[invalidates_sent_].send(command);
+        }
+        flush_state_ = FlushState::acknowledging;
+        progress     = true;
+    }
+    if (flush_.drain && flush_.writeback && acknowledged_ < commits_in.size()) return false;
+    flush_state_ = FlushState::none;
+    stats_.drain_cycles += cycle() - flush_since_;
+    return true;
+}
+
+sim::Activity FragmentScheduler::accept(bool progress) {
+    const auto limit = plan_->guard != nullptr ? plan_->lookups : static_cast<std::uint32_t>(pipes_out.size());
+    for (std::uint32_t n = 0; n < limit; ++n) {
+        const QuadTask* input = quads_in.peek();
+        if (input == nullptr) break;
+        if (flush_state_ == FlushState::none && at_batch_boundary(*input)) {
+            flush_state_      = FlushState::draining;
+            flush_since_      = cycle();
+            acknowledged_     = 0;
+            invalidates_sent_ = 0;
+            writeback_sent_   = false;
+            ++stats_.flushes;
+            batch_ = ~std::uint32_t{0};
+        }
+        if (flush_state_ != FlushState::none && !advance_flush(progress))
+            return progress ? sim::Activity::busy : sim::Activity::memory;
+        const Quad& quad     = pass_->stream->quads[input->quad];
+        const bool  guarded  = plan_->guard != nullptr && touches_kbuffer(*input);
+        Conflict    conflict = guarded ? plan_->guard->check(quad, input->mask) : Conflict::none;
+        const bool  ordered  = guarded && plan_->order_rule && waiting_per_key_[plan_->guard->key(quad)] != 0;
+        if (conflict != Conflict::none || ordered) {
+            if (side_buffer_.size() >= plan_->side_buffer) {
+                if (!std::exchange(overflowing_, true)) ++stats_.overflow_stalls;
+                return progress ? sim::Activity::busy : sim::Activity::hazard;
+            }
+            if (conflict == Conflict::true_conflict) ++stats_.true_conflicts;
+            if (conflict == Conflict::false_conflict) ++stats_.false_conflicts;
+            if (conflict == Conflict::none) ++stats_.order_waits;
+            Waiting waiting{quads_in.receive(), cycle()};
+            count_order(waiting.task);
+            ++waiting_per_key_[plan_->guard->key(quad)];
+            side_buffer_.push_back(waiting);
+            ++stats_.inserted;
+            stats_.waiting.note(side_buffer_.size());
+            stats_.waiting_max.note(side_buffer_.size());
+        } else {
+            if (!can_dispatch(*input))
+                return progress ? sim::Activity::busy : sim::Activity::blocked;
+            QuadTask task = quads_in.receive();
+            if (task.mask == 0) ++stats_.bypassed;
+            count_order(task);
+            dispatch(task, guarded);
+        }
+        const std::uint32_t triangle = quad.triangle;
+        batch_ = flush_.every_triangles != 0 ? triangle / flush_.every_triangles
+                                             : pass_->stream->triangles[triangle].draw;
+        progress     = true;
+        overflowing_ = false;
+    }
+    if (progress) return sim::Activity::busy;
+    if (!side_buffer_.empty()) return sim::Activity::hazard;
+    return in_flight_ == 0 ? sim::Activity::starved : sim::Activity::memory;
+}
+
+sim::Activity FragmentScheduler::tick() {
+    bool progress = take_commits();
+    progress      = wake_waiting() || progress;
+    return accept(progress);
+}
+
+} // namespace pipeline

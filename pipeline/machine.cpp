@@ -1,0 +1,316 @@
+#include "pipeline/machine.hpp"
+
+#include "pipeline/functional/shader.hpp"
+#include "pipeline/machine_units.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace pipeline {
+
+namespace {
+
+constexpr std::uint32_t bytes_of_format(ColourFormat format) {
+    return format == ColourFormat::rgba8 ? 4 : format == ColourFormat::rgba16f ? 8 : 16;
+}
+
+} // namespace
+
+Machine::Machine(const GpuParams& gpu, const Frame& frame, std::span<const FragmentStream> streams,
+                 const KBufferDesign& design, const MachineOptions& options)
+    : gpu_(gpu), frame_(&frame), streams_(streams), design_(&design), options_(options) {
+    const auto draw_passes = std::count_if(frame.passes.begin(), frame.passes.end(),
+                                           [](const Pass& pass) { return pass.kind == PassKind::draw; });
+    CHECK(static_cast<std::size_t>(draw_passes) == streams.size());
+    if (frame.program != nullptr) {
+        if (const std::string reason = design.refuses(*frame.program); !reason.empty())
+            throw sim::InputError(fmt::format("design {}: cannot run program {}: {}", design.id(), frame.program->id(), reason));
+        plan_ = design.plan(*frame.program, frame.view);
+    } else {
+        plan_.site = UpdateSite::passes;
+    }
+    build();
+    link();
+}
+
+Machine::~Machine() = default;
+
+void Machine::build() {
+    units_            = std::make_unique<Units>(gpu_, *frame_, options_);
+    Units& units      = *units_;
+    units.simulation.set_observer(options_.observer);
+    PassContext& pass = units.pass;
+    pass.frame        = frame_;
+    pass.program      = frame_->program.get();
+    pass.layout       = {frame_->view.width, frame_->view.height, gpu_.memory.partitions};
+    pass.peel         = plan_.passes;
+    pass.textures     = frame_->needs.textures;
+    if (!streams_.empty()) pass.stream = &streams_[0];
+
+    const bool shader_site = frame_->needs.kbuffer && plan_.site == UpdateSite::fragment_shader;
+    if (frame_->needs.kbuffer && plan_.site != UpdateSite::passes)
+        units.kbuffer.emplace(pass.layout, *pass.program, shader_site && plan_.shader.visibility != Visibility::rop_cache);
+    units.history.emplace(units.kbuffer ? pass.layout : SurfaceLayout{0, 0, 1});
+    const auto partitions = gpu_.memory.partitions;
+    // A quad keeps its slot from dispatch to commit: through the reorder buffer, the crossbar and the ROP's queue.
+    if (shader_site)
+        units.payloads.emplace(gpu_.reorder_quads() + partitions * (gpu_.crossbar.queue + gpu_.rop.queue),
+                               pass.program->floats_per_pixel());
+    QuadPayloads* payloads = units.payloads ? &*units.payloads : nullptr;
+
+    auto context = [&units](std::string name) { return units.simulation.context(std::move(name), units.core); };
+    units.rasterizer.emplace(context("rasterizer"), gpu_.raster, pass);
+    if (frame_->needs.early_depth || options_.build_everything)
+        units.early_depth.emplace(context("early_depth_test"), gpu_.early_depth, pass);
+    units.scheduler.emplace(context("fragment_scheduler"), gpu_.fragment.pipes, partitions, pass, plan_.scheduling,
+                            plan_.shader.flush, payloads, options_.quads_done);
+    for (std::uint32_t pipe = 0; pipe < gpu_.fragment.pipes; ++pipe)
+        units.pipes.emplace_back(context(fmt::format("fragment_pipe{}", pipe)), static_cast<std::uint16_t>(pipe), gpu_.fragment,
+                                 gpu_.texture, pass, partitions, shader_site ? &plan_.shader : nullptr, payloads);
+    units.reorder_buffer.emplace(context("reorder_buffer"), gpu_.reorder_buffer, gpu_.fragment.pipes, gpu_.reorder_quads());
+    units.crossbar.emplace(context("crossbar"), gpu_.crossbar, pass, partitions);
+    const RopSurfaces surfaces{&units.depth, units.kbuffer ? &*units.kbuffer : nullptr, &*units.history, payloads};
+    for (std::uint32_t rop = 0; rop < partitions; ++rop)
+        units.rops.emplace_back(context(fmt::format("rop{}", rop)), gpu_.rop, pass, plan_, surfaces,
+                                RopShape{gpu_.fragment.pipes, frame_->draws.size(), uses_depth() || options_.build_everything,
+                                         uses_colour() || options_.build_everything});
+}
+
+void Machine::link() {
+    Units&              units    = *units_;
+    const std::uint32_t width    = gpu_.raster.quads_per_clk;
+    const bool          guarded  = plan_.scheduling.guard != nullptr;
+    const sim::Cycle    lookup   = 1 + (guarded ? plan_.scheduling.lookup_latency : 0);
+    const std::uint32_t accepted = guarded ? plan_.scheduling.lookups : gpu_.fragment.pipes;
+    textures_linked_ = pass_reads_textures() || options_.build_everything;
+    units.front.attach(units.memory);
+    sim::connect(units.front.triangles_out(), units.rasterizer->triangles_in, {1, gpu_.raster.tiles_per_clk, 16});
+    // Inputs are as wide as the wider side, so that the unit, not the wire, sets the rate.
+    const sim::ChannelConfig to_scheduler{lookup, std::max(width, accepted), static_cast<std::uint32_t>(8 * width * (lookup + 1))};
+    if (units.early_depth) {
+        sim::connect(units.rasterizer->quads_out, units.early_depth->quads_in, {1, width, 4 * width});
+        sim::ChannelConfig delayed = to_scheduler;
+        delayed.latency += gpu_.early_depth.latency;
+        delayed.capacity = static_cast<std::uint32_t>(delayed.width * (delayed.latency + 8));
+        sim::connect(units.early_depth->quads_out, units.scheduler->quads_in, delayed);
+    } else {
+        sim::connect(units.rasterizer->quads_out, units.scheduler->quads_in, to_scheduler);
+    }
+    const std::uint32_t pipes = gpu_.fragment.pipes;
+    const std::uint32_t order_width = std::max(pipes, gpu_.reorder_buffer.retire_per_clk);
+    sim::connect(units.scheduler->order_out, units.reorder_buffer->order_in, {1, order_width, gpu_.reorder_quads()});
+    const sim::Cycle cross = gpu_.crossbar.latency;
+    for (std::uint32_t pipe = 0; pipe < pipes; ++pipe) {
+        FragmentPipeline& unit = units.pipes[pipe];
+        sim::connect(units.scheduler->pipes_out[pipe], unit.quads_in, {1, 1, 4});
+        sim::connect(unit.done_out, units.reorder_buffer->completions_in[pipe], {1, 1, 4});
+        if (textures_linked_)
+            units.memory.attach(unit.textures_out, unit.textures_in);
+        for (std::size_t rop = 0; rop < unit.reads_out.size(); ++rop) {
+            sim::connect(unit.reads_out[rop], units.rops[rop].reads_in[pipe], {cross, 1, static_cast<std::uint32_t>(cross + 4)});
+            sim::connect(units.rops[rop].reads_out[pipe], unit.reads_in[rop], {cross, 4, static_cast<std::uint32_t>(4 * (cross + 2))});
+            if (!unit.invalidations_in.empty())
+                sim::connect(units.rops[rop].invalidations_out[pipe], unit.invalidations_in[rop], {1, 16, 64});
+        }
+    }
+    const std::uint32_t retire = gpu_.reorder_buffer.retire_per_clk;
+    sim::connect(units.reorder_buffer->quads_out, units.crossbar->quads_in, {1, retire, 4 * retire});
+    for (std::uint32_t rop = 0; rop < gpu_.memory.partitions; ++rop) {
+        Rop& unit = units.rops[rop];
+        sim::connect(units.crossbar->partitions_out[rop], unit.quads_in, {cross, 1, gpu_.crossbar.queue + static_cast<std::uint32_t>(cross)});
+        units.memory.attach_rop(rop, unit.memory_out, unit.memory_in);
+        if (!units.scheduler->commits_in.empty())
+            sim::connect(unit.commits_out, units.scheduler->commits_in[rop], {1, 2, 16});
+    }
+}
+
+bool Machine::pass_reads_textures() const {
+    return frame_->needs.textures || peels();
+}
+
+bool Machine::peels() const {
+    return frame_->needs.kbuffer && plan_.site == UpdateSite::passes;
+}
+
+bool Machine::uses_depth() const {
+    return frame_->needs.depth || peels();
+}
+
+bool Machine::uses_colour() const {
+    return frame_->needs.colour_surface || (peels() && frame_->program->needs_colour());
+}
+
+std::uint64_t Machine::total_quads() const {
+    std::uint64_t quads = 0;
+    std::size_t   next  = 0;
+    for (const Pass& pass : frame_->passes) {
+        if (pass.kind != PassKind::draw) continue;
+        const bool layered = pass.kbuffer && peels();
+        quads += streams_[next++].quads.size() * (layered ? frame_->program->k() : 1);
+    }
+    return quads;
+}
+
+// The shader's cost depends on what the pass asks of it: depth-only entries need no colour.
+void Machine::set_costs() {
+    std::vector<ShaderCost>& costs = units_->pass.shader_costs;
+    costs.resize(frame_->draws.size());
+    std::uint32_t registers = 1;
+    for (std::size_t draw = 0; draw < costs.size(); ++draw) {
+        const Draw& call = frame_->draws[draw];
+        costs[draw]      = shader_cost(frame_->resources->materials[call.material], frame_->resources->geometries[call.geometry],
+                                  frame_->needs);
+        registers        = std::max(registers, costs[draw].registers);
+    }
+    // A shader that reads and writes the k-buffer keeps all render targets in registers.
+    if (units_->pass.end == FragmentEnd::kbuffer_store) registers += frame_->program->targets();
+    for (FragmentPipeline& pipe : units_->pipes) pipe.begin_pass(registers);
+}
+
+void Machine::begin(const std::string& name) {
+    passes_.push_back({name, units_->cycle(), 0, {}});
+    units_->stats_at_pass_start = units_->stats();
+}
+
+void Machine::end() {
+    PassResult& pass = passes_.back();
+    pass.cycles      = units_->cycle() - pass.first_cycle;
+    pass.counters    = sim::to_json(sim::difference(units_->stats(), units_->stats_at_pass_start));
+}
+
+void Machine::stream_surface(std::uint64_t read_bytes, std::uint64_t write_bytes) {
+    const auto partitions = static_cast<std::uint64_t>(units_->rops.size());
+    for (Rop& rop : units_->rops) rop.stream(read_bytes / partitions, write_bytes / partitions);
+    units_->simulation.run(options_.stop);
+}
+
+void Machine::run_draw(const FragmentStream& stream) {
+    Units& units      = *units_;
+    units.pass.stream = &stream;
+    for (Rop& rop : units.rops) rop.begin_pass();
+    units.scheduler->begin_pass();
+    set_costs();
+    units.front.start(stream, frame_->draws);
+    units.simulation.run(options_.stop);
+    for (Rop& rop : units.rops) rop.write_back_all();
+    units.simulation.run(options_.stop);
+}
+
+void Machine::clear(const Pass& pass) {
+    begin(pass.name);
+    const std::size_t pixels = std::size_t{frame_->view.width} * frame_->view.height;
+    std::uint64_t     bytes  = 0;
+    for (const std::string& surface : pass.writes) {
+        if (surface == "depth") {
+            units_->depth.depth.assign(pixels, farthest_depth(frame_->depth_format));
+            units_->depth.winner.assign(pixels, ~QuadId{0});
+            bytes += pixels * depth_bytes(frame_->depth_format);
+        }
+        if (surface == "colour") bytes += pixels * bytes_of_format(frame_->colour_format);
+        // Peeling clears its layers one by one instead.
+        if (surface == "kbuffer" && units_->kbuffer) bytes += pixels * frame_->program->bytes_per_pixel();
+    }
+    if (!gpu_.rop.fast_clear && bytes != 0) stream_surface(0, bytes);
+    end();
+}
+
+void Machine::draw(const Pass& pass, const FragmentStream& stream) {
+    PassContext& context = units_->pass;
+    const std::size_t pixels = std::size_t{frame_->view.width} * frame_->view.height;
+    if (units_->depth.winner.empty()) units_->depth = {std::vector(pixels, farthest_depth(frame_->depth_format)), std::vector(pixels, ~QuadId{0})};
+    context.depth        = pass.depth;
+    context.colour_write = pass.colour;
+    context.colour_bytes = bytes_of_format(frame_->colour_format);
+    context.depth_format = frame_->depth_format;
+    context.depth_bytes  = depth_bytes(frame_->depth_format);
+    context.behind       = nullptr;
+    if (!pass.kbuffer) {
+        context.end             = FragmentEnd::depth_colour;
+        context.read_only_depth = nullptr;
+        begin(pass.name);
+        run_draw(stream);
+        end();
+        units_->opaque = units_->depth;
+        return;
+    }
+    CHECK_MSG(!pass.depth.write, "a k-buffer pass does not write the depth surface");
+    context.read_only_depth = pass.depth.test ? &units_->opaque.depth : nullptr;
+    if (plan_.site == UpdateSite::passes) {
+        draw_layers(pass, stream);
+        return;
+    }
+    context.end = plan_.site == UpdateSite::blender ? FragmentEnd::kbuffer_blend : FragmentEnd::kbuffer_store;
+    begin(pass.name);
+    run_draw(stream);
+    end();
+}
+
+// W3: per layer clear, draw with the peel test against the layer before, copy the depth for the next one.
+void Machine::draw_layers(const Pass& pass, const FragmentStream& stream) {
+    PassContext&         context = units_->pass;
+    const ModifyProgram& program = *frame_->program;
+    const std::size_t    pixels  = std::size_t{frame_->view.width} * frame_->view.height;
+    const std::size_t    floats  = program.floats_per_pixel();
+    context.end                  = FragmentEnd::depth_colour;
+    context.depth                = {true, true};
+    context.depth_format         = plan_.passes.depth_format;
+    context.depth_bytes          = depth_bytes(context.depth_format);
+    context.colour_write         = program.needs_colour();
+    context.colour_bytes         = 16; // one RGBA32F target, as the k-buffer's entries
+    layers_.resize(pixels * floats);
+    for (std::size_t pixel = 0; pixel < pixels; ++pixel) program.clear(layers_.data() + pixel * floats);
+    PeeledLayer layer;
+    for (std::uint32_t i = 0; i < program.k(); ++i) {
+        begin(fmt::format("{} layer {}", pass.name, i));
+        units_->depth.depth.assign(pixels, farthest_depth(context.depth_format));
+        units_->depth.winner.assign(pixels, ~QuadId{0});
+        if (!gpu_.rop.fast_clear)
+            stream_surface(0, pixels * (context.depth_bytes + (context.colour_write ? context.colour_bytes : 0)));
+        context.behind = i == 0 ? nullptr : &layer;
+        run_draw(stream);
+        for (std::size_t pixel = 0; pixel < pixels; ++pixel) keep_layer(i, pixel, stream);
+        layer = {units_->depth.depth, units_->depth.winner};
+        if (i + 1 < program.k()) stream_surface(pixels * context.depth_bytes, pixels * context.depth_bytes);
+        end();
+    }
+    context.behind = nullptr;
+}
+
+void Machine::keep_layer(std::uint32_t layer, std::size_t pixel, const FragmentStream& stream) {
+    const QuadId winner = units_->depth.winner[pixel];
+    if (winner == ~QuadId{0}) return;
+    const ModifyProgram& program = *frame_->program;
+    const Quad&          quad    = stream.quads[winner];
+    const std::size_t    x = pixel % frame_->view.width, y = pixel / frame_->view.width;
+    const std::size_t    corner = (y - quad.y) * 2 + (x - quad.x);
+    const float*         rgba   = stream.colours.empty() ? nullptr : &stream.colours[winner][corner].x;
+    program.make_entry(rgba, stream.depths[winner][corner],
+                       layers_.data() + pixel * program.floats_per_pixel() + std::size_t{layer} * program.floats_per_entry());
+}
+
+RunResult Machine::run(const ReferenceImage& reference) {
+    RunResult   result;
+    std::size_t next = 0;
+    for (const Pass& pass : frame_->passes) {
+        switch (pass.kind) {
+        case PassKind::clear: clear(pass); break;
+        case PassKind::draw:
+            if (!pass.kbuffer) opaque_stream_ = next;
+            draw(pass, streams_[next++]);
+            break;
+        case PassKind::resolve: break; // not timed
+        }
+    }
+    result.design    = design_->id();
+    result.core_mhz  = gpu_.clock.core_mhz;
+    result.cycles    = units_->cycle();
+    list_units(result);
+    collect_pixels(result, reference);
+    collect_hazards(result);
+    collect_counters(result);
+    result.passes     = std::move(passes_);
+    result.host_ticks = units_->simulation.ticks();
+    return result;
+}
+
+} // namespace pipeline

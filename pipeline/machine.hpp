@@ -1,0 +1,84 @@
+// A GPU with one k-buffer design, running one frame.
+//
+// Builds only the units that the frame and the design need and links them; turns each pass of the frame into passes of the
+// hardware (one per layer for designs that peel); runs the event core once per pass; compares the surfaces with the
+// reference.
+#pragma once
+
+#include "pipeline/frame.hpp"
+#include "pipeline/gpu_params.hpp"
+#include "pipeline/output/kbuffer_design.hpp"
+#include "pipeline/reference.hpp"
+#include "pipeline/run_result.hpp"
+#include "sim/simulation.hpp"
+
+#include <atomic>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace pipeline {
+
+struct MachineOptions {
+    std::uint64_t               seed = 1;
+    sim::Mode                   mode = sim::Mode::normal;
+    const std::atomic<bool>*    stop = nullptr;        ///< becomes true to end the run (throws sim::Interrupted)
+    std::atomic<std::uint64_t>* quads_done = nullptr;  ///< progress
+    sim::Observer*              observer   = nullptr;
+    bool                        build_everything = false; ///< also units that nothing needs; results do not change
+};
+
+class Machine {
+  public:
+    /// @param streams one per draw pass of `frame`, in order; they, `frame` and `design` must outlive the machine
+    /// Throws sim::InputError when the design cannot run the frame's program.
+    Machine(const GpuParams& gpu, const Frame& frame, std::span<const FragmentStream> streams,
+            const KBufferDesign& design, const MachineOptions& options = {});
+    ~Machine();
+
+    /// Runs the frame once. `reference` is run_reference() of the same frame and streams.
+    RunResult run(const ReferenceImage& reference);
+
+    /// Quads all passes together will dispatch, for progress.
+    std::uint64_t total_quads() const;
+
+  private:
+    struct Units;
+
+    void build();
+    void link();
+    void begin(const std::string& name);
+    void end();
+    void clear(const Pass& pass);
+    void draw(const Pass& pass, const FragmentStream& stream);
+    void draw_layers(const Pass& pass, const FragmentStream& stream);
+    void keep_layer(std::uint32_t layer, std::size_t pixel, const FragmentStream& stream);
+    bool pass_reads_textures() const;
+    bool peels() const; ///< the k-buffer pass becomes one pass per layer
+    void run_draw(const FragmentStream& stream);
+    void stream_surface(std::uint64_t read_bytes, std::uint64_t write_bytes);
+    void set_costs();
+    void list_units(RunResult& result) const;
+    void collect_pixels(RunResult& result, const ReferenceImage& reference) const;
+    void collect_hazards(RunResult& result) const;
+    void collect_counters(RunResult& result) const;
+    void collect_vertex_caches(RunResult& result) const;
+    void collect_draw(RunResult& result, std::uint32_t draw) const;
+    std::vector<float> colour_surface() const;
+    bool uses_depth() const;
+    bool uses_colour() const;
+
+    GpuParams                       gpu_;
+    const Frame*                    frame_;
+    std::span<const FragmentStream> streams_;
+    const KBufferDesign*            design_;
+    MachineOptions                  options_;
+    KBufferPlan                     plan_;
+    std::unique_ptr<Units>          units_;
+    std::vector<PassResult>         passes_;
+    std::vector<float>              layers_; ///< k-buffer content put together from peeled layers
+    std::size_t                     opaque_stream_   = 0; ///< stream of the depth-buffered pass
+    bool                            textures_linked_ = false;
+};
+
+} // namespace pipeline

@@ -1,0 +1,246 @@
+// What a machine says after a run: pixels against the reference, hazards, counters by stage, pass and draw.
+#include "pipeline/functional/colour_format.hpp"
+#include "pipeline/image_difference.hpp"
+#include "pipeline/machine_units.hpp"
+#include "pipeline/memory/unit_report.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <fmt/format.h>
+
+namespace pipeline {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+template <class Units, class Stats>
+Json units_report(const Units& units, const Stats& sum) {
+    Json report;
+    report["units"]    = units.size();
+    report["counters"] = sim::to_json(sum);
+    for (const auto& unit : units) add_activity(report["activity"], unit);
+    return report;
+}
+
+template <class Unit>
+Json one_unit_report(const Unit& unit) {
+    Json report = unit_report(unit);
+    report["units"] = 1;
+    return report;
+}
+
+Json cache_report(std::uint64_t hits, std::uint64_t misses) {
+    const std::uint64_t accesses = hits + misses;
+    return {{"accesses", accesses},
+            {"hits", hits},
+            {"misses", misses},
+            {"hit_rate", accesses == 0 ? 0.0 : static_cast<double>(hits) / static_cast<double>(accesses)}};
+}
+
+Json link_report(std::uint64_t bytes, std::uint64_t fragments) {
+    return {{"bytes", bytes},
+            {"per_fragment", fragments == 0 ? 0.0 : static_cast<double>(bytes) / static_cast<double>(fragments)}};
+}
+
+} // namespace
+
+MachineStats Machine::Units::stats() const {
+    MachineStats sum;
+    sum.geometry = front.stats();
+    sum.raster   = rasterizer->stats();
+    if (early_depth) sum.early_depth = early_depth->stats();
+    sum.scheduler = scheduler->stats();
+    for (const FragmentPipeline& pipe : pipes) sim::add(sum.fragment, pipe.stats());
+    sum.reorder_buffer = reorder_buffer->stats();
+    sum.crossbar       = crossbar->stats();
+    for (const Rop& rop : rops) sim::add(sum.rop, rop.stats());
+    sum.memory = memory.controller_stats();
+    return sum;
+}
+
+void Machine::list_units(RunResult& result) const {
+    const auto part = [&result](bool built, const char* unit, std::string reason) {
+        if (built)
+            result.built.emplace_back(unit);
+        else
+            result.left_out.emplace_back(unit, std::move(reason));
+    };
+    const Units&      units  = *units_;
+    const std::string design(design_->id());
+    const bool        shader_site = units.payloads.has_value();
+    for (const char* unit : {"command processor", "vertex reuse", "vertex fetch", "vertex shader", "primitive assembly",
+                             "clip and cull", "triangle setup", "rasterizer", "fragment scheduler", "fragment pipelines",
+                             "reorder buffer", "crossbar", "ROP partitions", "memory partitions"})
+        part(true, unit, {});
+    part(units.front.has_index_fetch(), "index fetch", "no draw is indexed");
+    part(units.early_depth.has_value(), "early depth test", "no pass tests a depth surface that it does not write");
+    part(textures_linked_, "texture path to memory", "no texture and no peeled layer is read");
+    part(plan_.scheduling.guard != nullptr, "dispatch guard and side buffer", design + " lets every quad into the pipes");
+    part(shader_site, "k-buffer read path of the shaders", design + " does not read the k-buffer in the shader");
+    part(plan_.site == UpdateSite::blender && units.kbuffer, "programmable blender", design + " does not modify pixels in the ROP");
+    part(units.kbuffer.has_value(), "k-buffer surface and its tile cache", design + " keeps its layers in depth and colour surfaces");
+    part(uses_depth(), "depth tile cache", "no pass tests or writes depth");
+    part(uses_colour(), "colour tile cache", "no pass writes colour");
+    for (const LeftOut& item : frame_->left_out)
+        if (std::none_of(result.left_out.begin(), result.left_out.end(), [&](const auto& listed) { return listed.first == item.unit; }))
+            result.left_out.emplace_back(item.unit, item.reason);
+}
+
+void Machine::collect_pixels(RunResult& result, const ReferenceImage& reference) const {
+    const Units& units = *units_;
+    if (frame_->needs.kbuffer) {
+        result.kbuffer = units.kbuffer ? units.kbuffer->image() : layers_;
+        KBufferDifference difference = compare_kbuffers(*frame_->program, result.kbuffer, reference.kbuffer);
+        result.wrong_mask     = std::move(difference.wrong);
+        result.lost_fragments = difference.lost_fragments;
+        result.layers         = std::move(difference.layers);
+    }
+    result.wrong_mask.resize(std::size_t{frame_->view.width} * frame_->view.height);
+    if (frame_->needs.colour_surface) {
+        result.colour = colour_surface();
+        CHECK(result.colour.size() == reference.colour.size());
+        for (std::size_t at = 0; at < result.colour.size(); ++at)
+            if (std::bit_cast<std::uint32_t>(result.colour[at]) != std::bit_cast<std::uint32_t>(reference.colour[at]))
+                result.wrong_mask[at / 4] = 1;
+    }
+    if (frame_->needs.depth && !units.opaque.depth.empty())
+        for (std::size_t pixel = 0; pixel < reference.depth.size(); ++pixel)
+            if (depth_value(frame_->depth_format, units.opaque.depth[pixel]) != reference.depth[pixel])
+                result.wrong_mask[pixel] = 1;
+    result.wrong_pixels = static_cast<std::uint64_t>(std::count(result.wrong_mask.begin(), result.wrong_mask.end(), 1));
+}
+
+// The colour surface of the depth-buffered pass: the shaded colour of the fragment that won each pixel.
+std::vector<float> Machine::colour_surface() const {
+    const std::size_t  pixels     = std::size_t{frame_->view.width} * frame_->view.height;
+    const glm::vec4    background = through_format(frame_->colour_format, frame_->background);
+    std::vector<float> image(pixels * 4);
+    for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
+        const QuadId winner = units_->opaque.winner.empty() ? ~QuadId{0} : units_->opaque.winner[pixel];
+        glm::vec4    colour = background;
+        if (winner != ~QuadId{0}) {
+            const FragmentStream& stream = streams_[opaque_stream_];
+            const Quad&           quad   = stream.quads[winner];
+            const std::size_t     corner = (pixel / frame_->view.width - quad.y) * 2 + (pixel % frame_->view.width - quad.x);
+            colour = through_format(frame_->colour_format, stream.colours[winner][corner]);
+        }
+        for (int channel = 0; channel < 4; ++channel) image[pixel * 4 + static_cast<std::size_t>(channel)] = colour[channel];
+    }
+    return image;
+}
+
+void Machine::collect_hazards(RunResult& result) const {
+    const Units& units = *units_;
+    std::uint64_t staleness = 0;
+    for (const Rop& rop : units.rops) {
+        const HazardLedger& ledger = rop.ledger();
+        const HazardCounts& counts = ledger.counts();
+        result.hazards.h1 += counts.h1;
+        result.hazards.h2 += counts.h2;
+        result.hazards.h3 += counts.h3;
+        result.hazards.h4 += counts.h4;
+        result.hazards.pixels += counts.pixels;
+        staleness += ledger.staleness_sum();
+        result.max_staleness = std::max(result.max_staleness, ledger.staleness_max());
+        const auto& distances = ledger.distances();
+        if (result.hazard_distance.size() < distances.size()) result.hazard_distance.resize(distances.size());
+        for (std::size_t bin = 0; bin < distances.size(); ++bin) result.hazard_distance[bin] += distances[bin];
+        result.pairs.insert(result.pairs.end(), ledger.pairs().begin(), ledger.pairs().end());
+    }
+    std::stable_sort(result.pairs.begin(), result.pairs.end(),
+                     [](const HazardPair& a, const HazardPair& b) { return a.read < b.read; });
+    const std::uint64_t total = result.hazards.total();
+    result.mean_staleness     = total == 0 ? 0.0 : static_cast<double>(staleness) / static_cast<double>(total);
+    result.lost_updates       = units.kbuffer ? units.kbuffer->lost_updates() : 0;
+
+    const SurfaceLayout& layout = units.pass.layout;
+    if (total != 0) result.hazard_mask.resize(std::size_t{layout.width} * layout.height);
+    for (std::size_t pixel = 0; pixel < result.wrong_mask.size(); ++pixel) {
+        const auto x = static_cast<std::uint32_t>(pixel % layout.width), y = static_cast<std::uint32_t>(pixel / layout.width);
+        const std::uint8_t classes =
+            units.kbuffer ? units.history->classes(layout.block_of(x, y), y % 2 * 2 + x % 2) : std::uint8_t{0};
+        if (total != 0) result.hazard_mask[pixel] = classes;
+        if (result.wrong_mask[pixel] != 0 && classes == 0) ++result.unexplained_pixels;
+    }
+}
+
+void Machine::collect_counters(RunResult& result) const {
+    const Units&       units = *units_;
+    const MachineStats stats = units.stats();
+    result.fragments         = stats.rop.fragments;
+    Json& stages             = result.stages;
+    stages                   = units.front.report();
+    stages["rasterizer"]     = one_unit_report(*units.rasterizer);
+    if (units.early_depth) stages["early_depth_test"] = one_unit_report(*units.early_depth);
+    stages["fragment_scheduler"] = one_unit_report(*units.scheduler);
+    stages["fragment_pipeline"]  = units_report(units.pipes, stats.fragment);
+    stages["reorder_buffer"]     = one_unit_report(*units.reorder_buffer);
+    stages["crossbar"]           = one_unit_report(*units.crossbar);
+    stages["rop"]                = units_report(units.rops, stats.rop);
+    const Json memory = units.memory.report();
+    for (const auto& item : memory.items()) stages[item.key()] = item.value();
+
+    for (const auto& stage : stages.items()) {
+        double total = 0;
+        for (const auto& activity : stage.value()["activity"].items()) total += activity.value().get<double>();
+        for (const auto& activity : stage.value()["activity"].items())
+            result.stalls[stage.key()][activity.key()] = total == 0 ? 0.0 : activity.value().get<double>() / total;
+    }
+
+    const auto tile_cache = [&result](const char* name, const TileCacheStats& tiles) {
+        if (tiles.accesses != 0) result.caches[name] = cache_report(tiles.hits, tiles.misses);
+    };
+    collect_vertex_caches(result);
+    const TextureCacheStats& l1 = stats.fragment.l1;
+    if (l1.texture_hits + l1.texture_misses != 0)
+        result.caches["texture_l1"] = cache_report(l1.texture_hits, l1.texture_misses);
+    if (l1.kbuffer_hits + l1.kbuffer_misses + l1.kbuffer_merged != 0)
+        result.caches["texture_l1_kbuffer"] = cache_report(l1.kbuffer_hits + l1.kbuffer_merged, l1.kbuffer_misses);
+    tile_cache("depth_tiles", stats.rop.depth_tiles);
+    tile_cache("colour_tiles", stats.rop.colour_tiles);
+    tile_cache("kbuffer_tiles", stats.rop.kbuffer_tiles);
+
+    std::uint64_t dram = 0;
+    for (const sim::Counter& bytes : stats.memory.bytes) dram += bytes;
+    result.bytes["dram"] = link_report(dram, result.fragments);
+    for (std::size_t client = 0; client < memory_client_count; ++client)
+        if (stats.memory.bytes[client] != 0)
+            result.bytes[fmt::format("dram_{}", memory_client_names[client])] =
+                link_report(stats.memory.bytes[client], result.fragments);
+    result.bytes["crossbar"] = link_report(stats.crossbar.bytes, result.fragments);
+
+    if (frame_->program != nullptr)
+        result.area = design_->area(*frame_->program, frame_->view, gpu_.reorder_quads());
+    for (std::uint32_t draw = 0; draw < frame_->draws.size(); ++draw) collect_draw(result, draw);
+}
+
+void Machine::collect_vertex_caches(RunResult& result) const {
+    const GeometryStats geometry = units_->front.stats();
+    result.caches["post_transform"] = cache_report(geometry.vertex_reuse.hits, geometry.vertex_reuse.misses);
+    result.caches["pre_transform"]  = cache_report(geometry.vertex_fetch.cache.hits, geometry.vertex_fetch.cache.misses);
+}
+
+void Machine::collect_draw(RunResult& result, std::uint32_t draw) const {
+    DrawOutput output;
+    for (const Rop& rop : units_->rops) {
+        const DrawOutput& part = rop.draw_outputs()[draw];
+        output.quads += part.quads;
+        output.fragments += part.fragments;
+        output.hazards += part.hazards;
+        output.first_cycle = std::min(output.first_cycle, part.first_cycle);
+        output.last_cycle  = std::max(output.last_cycle, part.last_cycle);
+    }
+    Json counters             = sim::to_json(units_->front.draw_stats(draw));
+    counters["quads"]         = output.quads;
+    counters["fragments"]     = output.fragments;
+    counters["hazardous_quads"] = output.hazards;
+    counters["first_cycle"]   = output.quads == 0 ? 0 : output.first_cycle;
+    counters["last_cycle"]    = output.last_cycle;
+    const MemoryBytes bytes   = units_->memory.draw_bytes(draw);
+    for (std::size_t client = 0; client < memory_client_count; ++client)
+        counters[fmt::format("dram_{}_bytes", memory_client_names[client])] = bytes[client];
+    result.draws.push_back({frame_->draws[draw].name, draw, std::move(counters)});
+}
+
+} // namespace pipeline

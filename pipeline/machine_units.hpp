@@ -1,0 +1,72 @@
+// The units of a machine and the surfaces they work on; private to machine*.cpp.
+#pragma once
+
+#include "pipeline/fragment/fragment_scheduler.hpp"
+#include "pipeline/machine.hpp"
+#include "sim/described_json.hpp"
+
+#include <deque>
+#include <optional>
+
+namespace pipeline {
+
+/// All counters of a machine; two copies subtracted give those of a pass.
+struct MachineStats {
+    GeometryStats          geometry;
+    RasterizerStats        raster;
+    EarlyDepthStats        early_depth;
+    FragmentSchedulerStats scheduler;
+    FragmentPipelineStats  fragment;
+    ReorderBufferStats     reorder_buffer;
+    CrossbarStats          crossbar;
+    RopStats               rop;
+    MemoryControllerStats  memory;
+
+    static constexpr auto fields() {
+        using S = MachineStats;
+        return std::tuple{sim::field<&S::geometry>("From draw call to triangle"),
+                          sim::field<&S::raster>("Rasterizer"),
+                          sim::field<&S::early_depth>("Early depth test"),
+                          sim::field<&S::scheduler>("Fragment scheduler"),
+                          sim::field<&S::fragment>("Fragment pipelines"),
+                          sim::field<&S::reorder_buffer>("Reorder buffer"),
+                          sim::field<&S::crossbar>("Crossbar"),
+                          sim::field<&S::rop>("ROP partitions"),
+                          sim::field<&S::memory>("Memory partitions")};
+    }
+};
+static_assert(sim::fully_described<MachineStats>);
+
+struct Machine::Units {
+    Units(const GpuParams& gpu, const Frame& frame, const MachineOptions& options)
+        : simulation(options.seed, options.mode), core(simulation.add_clock("core", gpu.clock.core_mhz)),
+          memory(simulation, core, gpu.memory), front(simulation, core, gpu.geometry, frame, frame.needs) {}
+
+    sim::Simulation  simulation;
+    const sim::Clock& core;
+    PassContext      pass;
+
+    std::optional<KBufferMemory> kbuffer;
+    std::optional<StoreHistory>  history;
+    std::optional<QuadPayloads>  payloads;
+    DepthSurface                 depth;
+    DepthSurface                 opaque; ///< result of the depth-buffered passes before the k-buffer pass
+
+    MemorySystem                      memory;
+    GeometryFront                     front;
+    std::optional<Rasterizer>         rasterizer;
+    std::optional<EarlyDepthTest>     early_depth;
+    std::optional<FragmentScheduler>  scheduler;
+    std::deque<FragmentPipeline>      pipes;
+    std::optional<ReorderBuffer>      reorder_buffer;
+    std::optional<Crossbar>           crossbar;
+    std::deque<Rop>                   rops;
+
+    MachineStats stats_at_pass_start;
+    sim::Cycle   cycle_at_pass_start = 0;
+
+    MachineStats stats() const;
+    sim::Cycle   cycle() const { return core.cycle_at(simulation.now()); }
+};
+
+} // namespace pipeline

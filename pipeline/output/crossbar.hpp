@@ -1,0 +1,65 @@
+// The crossbar from the reorder buffer to the ROP partitions: one link per partition, in order, with bounded bandwidth.
+//
+// Modelled: bytes of a fragment's outputs over a link per cycle; head-of-line blocking behind a full partition.
+// Source: specification 004, sections 7, 7.3 (crossbar traffic: FS outputs only, versus 64 B for the shader designs).
+#pragma once
+
+#include "pipeline/fragment/messages.hpp"
+#include "pipeline/fragment/pass_context.hpp"
+#include "sim/channel.hpp"
+#include "sim/described.hpp"
+#include "sim/stats.hpp"
+
+#include <deque>
+#include <vector>
+
+namespace pipeline {
+
+struct CrossbarParams {
+    std::uint32_t bytes_per_clk = 64;
+    std::uint32_t latency       = 10;
+    std::uint32_t queue         = 16;
+
+    static constexpr auto fields() {
+        using P = CrossbarParams;
+        return std::tuple{
+            sim::field<&P::bytes_per_clk>("Bytes per cycle to one ROP partition").unit("bytes").range(1, 4096),
+            sim::field<&P::latency>("Cycles from one side to the other, in both directions").unit("cycles").range(1, 1000),
+            sim::field<&P::queue>("Quads between the crossbar and one partition").unit("quads").range(1, 4096)};
+    }
+};
+static_assert(sim::fully_described<CrossbarParams>);
+
+struct CrossbarStats {
+    sim::Counter quads, bytes;
+
+    static constexpr auto fields() {
+        return std::tuple{sim::field<&CrossbarStats::quads>("Quads carried").unit("quads"),
+                          sim::field<&CrossbarStats::bytes>("Bytes of fragment outputs carried").unit("bytes")};
+    }
+};
+static_assert(sim::fully_described<CrossbarStats>);
+
+class Crossbar final : public sim::Component {
+  public:
+    sim::In<QuadTask>              quads_in{*this, "quads_in"};
+    std::deque<sim::Out<QuadTask>> partitions_out;
+
+    Crossbar(sim::Context context, const CrossbarParams& params, const PassContext& pass, std::uint32_t partitions);
+
+    const CrossbarStats& stats() const { return stats_; }
+    /// Bytes of shader outputs one living fragment of the present pass sends.
+    std::uint32_t bytes_per_fragment() const;
+
+  private:
+    sim::Activity tick() override;
+    bool          broadcast(const QuadTask& command);
+
+    CrossbarParams           params_;
+    const PassContext*       pass_;
+    std::vector<std::string> port_names_;
+    std::vector<sim::Cycle>  link_free_;
+    CrossbarStats            stats_;
+};
+
+} // namespace pipeline

@@ -1,0 +1,44 @@
+// How a surface is cut into the units that caches, ROPs and memory work on.
+//
+// A tile is 4x4 pixels and belongs to one ROP partition; a block is one aligned 2x2 quad. Blocks are numbered tile by tile
+// so that a tile is contiguous in memory.
+#pragma once
+
+#include <cstdint>
+
+namespace pipeline {
+
+struct SurfaceLayout {
+    static constexpr std::uint32_t tile_size = 4; ///< pixels along one side
+
+    std::uint32_t width = 0, height = 0;
+    std::uint32_t partitions = 1;
+
+    std::uint32_t tiles_x() const { return (width + tile_size - 1) / tile_size; }
+    std::uint32_t tiles_y() const { return (height + tile_size - 1) / tile_size; }
+    std::uint32_t tiles() const { return tiles_x() * tiles_y(); }
+    std::uint32_t blocks() const { return tiles() * 4; }
+
+    std::uint32_t tile_of(std::uint32_t x, std::uint32_t y) const {
+        return (y / tile_size) * tiles_x() + x / tile_size;
+    }
+    std::uint32_t block_of(std::uint32_t x, std::uint32_t y) const {
+        return tile_of(x, y) * 4 + (y / 2 % 2) * 2 + x / 2 % 2;
+    }
+    static std::uint32_t tile_of_block(std::uint32_t block) { return block / 4; }
+
+    /// Upper-left pixel of a block.
+    std::uint32_t block_x(std::uint32_t block) const {
+        return (block / 4 % tiles_x()) * tile_size + block % 2 * 2;
+    }
+    std::uint32_t block_y(std::uint32_t block) const {
+        return (block / 4 / tiles_x()) * tile_size + block / 2 % 2 * 2;
+    }
+    /// Neighbouring tiles lie in different partitions in both directions.
+    std::uint32_t partition_of_tile(std::uint32_t tile) const {
+        return (tile % tiles_x() + 2 * (tile / tiles_x())) % partitions;
+    }
+    std::uint32_t partition_of(std::uint32_t x, std::uint32_t y) const { return partition_of_tile(tile_of(x, y)); }
+};
+
+} // namespace pipeline

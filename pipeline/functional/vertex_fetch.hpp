@@ -24,8 +24,11 @@ class AttributeReader {
         : AttributeReader(resources.buffers[attribute.buffer].bytes.data(), attribute) {}
     /// From the buffer that starts at `buffer`, whatever number the attribute gives.
     AttributeReader(const std::byte* buffer, const VertexAttribute& attribute)
-        : first_(buffer + attribute.offset), stride_(attribute.stride), type_(attribute.type),
-          components_(attribute.components), normalized_(attribute.normalized) {}
+        : first_(buffer + attribute.offset),
+          stride_(attribute.stride),
+          type_(attribute.type),
+          components_(attribute.components),
+          normalized_(attribute.normalized) {}
 
     glm::vec4 operator()(std::uint32_t element) const {
         const std::byte* source = first_ + element * stride_;

@@ -33,6 +33,10 @@ ChannelBase::ChannelBase(std::string name, ChannelConfig config, Component& send
     config_.capacity = static_cast<std::uint32_t>(full_throughput);
 }
 
+void unlinked(const Component& owner, std::string_view port) {
+    check_failed("linked", __FILE__, __LINE__, owner.name() + "." + std::string(port) + " is not linked");
+}
+
 void ChannelBase::begin_sending() {
     send_time_ = simulation_->now();
     ready_ = send_time_ + delay_;

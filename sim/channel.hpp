@@ -159,6 +159,9 @@ class Channel final : public ChannelBase {
     std::unique_ptr<Entry[]> ring_;
 };
 
+/// Throws InternalError: a port was used that connect() has not linked.
+[[noreturn]] void unlinked(const Component& owner, std::string_view port);
+
 template <class T>
 class In;
 template <class T>
@@ -184,10 +187,10 @@ class Out {
     template <class U>
     friend ChannelBase& connect(Out<U>&, In<U>&, ChannelConfig);
     Channel<T>& linked() const {
-        CHECK_MSG(channel_ != nullptr, unlinked());
+        if (channel_ == nullptr) [[unlikely]]
+            unlinked(*owner_, name_);
         return *channel_;
     }
-    std::string unlinked() const { return owner_->name() + "." + std::string(name_) + " is not linked"; }
 
     Component* owner_;
     std::string_view name_;
@@ -212,10 +215,10 @@ class In {
     template <class U>
     friend ChannelBase& connect(Out<U>&, In<U>&, ChannelConfig);
     Channel<T>& linked() const {
-        CHECK_MSG(channel_ != nullptr, unlinked());
+        if (channel_ == nullptr) [[unlikely]]
+            unlinked(*owner_, name_);
         return *channel_;
     }
-    std::string unlinked() const { return owner_->name() + "." + std::string(name_) + " is not linked"; }
 
     Component* owner_;
     std::string_view name_;

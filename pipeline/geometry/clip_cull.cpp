@@ -8,25 +8,33 @@ ClipCull::ClipCull(sim::Context context, const Params& params, const GeometryPas
 void ClipCull::book(const Primitive& primitive, Stats& stats) const {
     ++stats.primitives;
     switch (primitive.fate) {
-    case PrimitiveFate::drawn: ++stats.drawn; break;
-    case PrimitiveFate::culled_facing: ++stats.culled_facing; break;
-    case PrimitiveFate::culled_outside: ++stats.culled_outside; break;
-    case PrimitiveFate::culled_degenerate: ++stats.culled_degenerate; break;
+    case PrimitiveFate::drawn:
+        ++stats.drawn;
+        break;
+    case PrimitiveFate::culled_facing:
+        ++stats.culled_facing;
+        break;
+    case PrimitiveFate::culled_outside:
+        ++stats.culled_outside;
+        break;
+    case PrimitiveFate::culled_degenerate:
+        ++stats.culled_degenerate;
+        break;
     }
     if (primitive.clipped) ++stats.clipped;
     stats.triangles += primitive.triangles;
 }
 
 void ClipCull::take(const AssembledPrimitive& message) {
-    const Primitive&    primitive = pass_->stream->primitives[message.primitive];
-    const std::uint32_t draw      = pass_->range(message.range).draw;
+    const Primitive& primitive = pass_->stream->primitives[message.primitive];
+    const std::uint32_t draw = pass_->range(message.range).draw;
     if (draw >= draw_stats_.size()) draw_stats_.resize(draw + 1);
     book(primitive, stats_);
     book(primitive, draw_stats_[draw]);
-    next_    = primitive.first_triangle;
-    end_     = primitive.first_triangle + primitive.triangles;
+    next_ = primitive.first_triangle;
+    end_ = primitive.first_triangle + primitive.triangles;
     clipped_ = primitive.clipped;
-    ready_   = cycle() + (clipped_ ? params_.clip_cycles : 0);
+    ready_ = cycle() + (clipped_ ? params_.clip_cycles : 0);
 }
 
 sim::Activity ClipCull::tick() {

@@ -31,14 +31,13 @@ struct ClipCullStats {
 
     static constexpr auto fields() {
         using S = ClipCullStats;
-        return std::tuple{
-            sim::field<&S::primitives>("Primitives received; drawn + culled").unit("primitives"),
-            sim::field<&S::drawn>("Primitives that became triangles").unit("primitives"),
-            sim::field<&S::culled_facing>("Primitives that face the other way").unit("primitives"),
-            sim::field<&S::culled_outside>("Primitives outside the view").unit("primitives"),
-            sim::field<&S::culled_degenerate>("Primitives without area").unit("primitives"),
-            sim::field<&S::clipped>("Primitives cut by the view volume").unit("primitives"),
-            sim::field<&S::triangles>("Triangles sent").unit("triangles")};
+        return std::tuple{sim::field<&S::primitives>("Primitives received; drawn + culled").unit("primitives"),
+                          sim::field<&S::drawn>("Primitives that became triangles").unit("primitives"),
+                          sim::field<&S::culled_facing>("Primitives that face the other way").unit("primitives"),
+                          sim::field<&S::culled_outside>("Primitives outside the view").unit("primitives"),
+                          sim::field<&S::culled_degenerate>("Primitives without area").unit("primitives"),
+                          sim::field<&S::clipped>("Primitives cut by the view volume").unit("primitives"),
+                          sim::field<&S::triangles>("Triangles sent").unit("triangles")};
     }
 };
 static_assert(sim::fully_described<ClipCullStats>);
@@ -46,31 +45,31 @@ static_assert(sim::fully_described<ClipCullStats>);
 class ClipCull final : public sim::Component {
   public:
     using Params = ClipCullParams;
-    using Stats  = ClipCullStats;
+    using Stats = ClipCullStats;
 
     sim::In<AssembledPrimitive> primitives_in{*this, "primitives_in"};
-    sim::Out<TriangleTask>      triangles_out{*this, "triangles_out"};
+    sim::Out<TriangleTask> triangles_out{*this, "triangles_out"};
 
     ClipCull(sim::Context context, const Params& params, const GeometryPass& pass);
 
-    const Stats&  stats() const { return stats_; }
+    const Stats& stats() const { return stats_; }
     const Params& params() const { return params_; }
     /// Stats by draw; draws not seen may be missing at the end.
     const std::vector<Stats>& draw_stats() const { return draw_stats_; }
 
   private:
     sim::Activity tick() override;
-    void          take(const AssembledPrimitive& message);
-    void          book(const Primitive& primitive, Stats& stats) const;
+    void take(const AssembledPrimitive& message);
+    void book(const Primitive& primitive, Stats& stats) const;
 
-    Params              params_;
+    Params params_;
     const GeometryPass* pass_;
-    Stats               stats_;
-    std::vector<Stats>  draw_stats_;
-    std::uint32_t       next_       = 0; ///< triangle to be sent next
-    std::uint32_t       end_        = 0; ///< one past the last triangle of the present primitive
-    bool                clipped_    = false;
-    sim::Cycle          ready_      = 0; ///< edge at which triangle next_ is cut
+    Stats stats_;
+    std::vector<Stats> draw_stats_;
+    std::uint32_t next_ = 0; ///< triangle to be sent next
+    std::uint32_t end_ = 0;  ///< one past the last triangle of the present primitive
+    bool clipped_ = false;
+    sim::Cycle ready_ = 0; ///< edge at which triangle next_ is cut
 };
 
 } // namespace pipeline

@@ -14,13 +14,13 @@ CommandProcessor::CommandProcessor(sim::Context context, const Params& params, c
 void CommandProcessor::start() {
     CHECK_MSG(activity() == sim::Activity::idle && !starting_, name());
     starting_ = true;
-    start_    = clock().time_of(clock().cycle_at(now() + 1));
+    start_ = clock().time_of(clock().cycle_at(now() + 1));
     simulation().wake(*this, start_);
 }
 
 bool CommandProcessor::begins_call() const {
     if (next_ == 0) return true;
-    const DrawRange& range  = pass_->range(next_);
+    const DrawRange& range = pass_->range(next_);
     const DrawRange& before = pass_->range(next_ - 1);
     return range.draw != before.draw || range.instance <= before.instance;
 }
@@ -28,7 +28,7 @@ bool CommandProcessor::begins_call() const {
 bool CommandProcessor::take() {
     sim::Cycle cost = 0;
     if (begins_call()) {
-        const auto       cpu_time  = static_cast<sim::Time>(calls_ * params_.draw_cpu_us * ps_per_us + 0.5);
+        const auto cpu_time = static_cast<sim::Time>(calls_ * params_.draw_cpu_us * ps_per_us + 0.5);
         const sim::Cycle submitted = clock().cycle_at(start_ + cpu_time);
         if (submitted > cycle()) {
             wake_at(submitted);
@@ -40,7 +40,7 @@ bool CommandProcessor::take() {
         ++stats_.draws;
     }
     set_up_at_ = cycle() + cost;
-    taken_     = true;
+    taken_ = true;
     return true;
 }
 
@@ -48,9 +48,9 @@ sim::Activity CommandProcessor::tick() {
     if (starting_) {
         if (now() < start_) return sim::Activity::idle;
         starting_ = false;
-        free_     = cycle();
-        next_     = 0;
-        calls_    = 0;
+        free_ = cycle();
+        next_ = 0;
+        calls_ = 0;
     }
     if (next_ == pass_->ranges.size()) return sim::Activity::idle;
     if (!taken_ && !take()) return sim::Activity::starved;
@@ -62,7 +62,7 @@ sim::Activity CommandProcessor::tick() {
     draws_out.send({next_});
     ++stats_.instances;
     ++next_;
-    free_  = cycle();
+    free_ = cycle();
     taken_ = false;
     return sim::Activity::busy;
 }

@@ -1,9 +1,9 @@
 // The command processor: takes draw commands as the processor (CPU) submits them and sets the pipeline up for each.
 //
-// Modelled: a draw call arrives no earlier than the calls before it have cost on the CPU; its state costs GPU cycles, while
-// earlier draws are still being drawn. The instances of one draw are one call, of which only the first pays.
-// Not modelled: the bus that commands arrive over; dependencies between draws.
-// Source: specification 004, sections 2.1, 5 (draw_cpu_us, draw_gpu_cycles), 9.1.
+// Modelled: a draw call arrives no earlier than the calls before it have cost on the CPU; its state costs GPU cycles,
+// while earlier draws are still being drawn. The instances of one draw are one call, of which only the first pays. Not
+// modelled: the bus that commands arrive over; dependencies between draws. Source: specification 004, sections 2.1, 5
+// (draw_cpu_us, draw_gpu_cycles), 9.1.
 #pragma once
 
 #include "pipeline/geometry/geometry_pass.hpp"
@@ -14,12 +14,14 @@
 namespace pipeline {
 
 struct CommandProcessorParams {
-    double        draw_cpu_us     = 2.0;
+    double draw_cpu_us = 2.0;
     std::uint32_t draw_gpu_cycles = 200;
 
     static constexpr auto fields() {
         return std::tuple{
-            sim::field<&CommandProcessorParams::draw_cpu_us>("CPU time between two draw calls").unit("us").range(0, 1e6),
+            sim::field<&CommandProcessorParams::draw_cpu_us>("CPU time between two draw calls")
+                .unit("us")
+                .range(0, 1e6),
             sim::field<&CommandProcessorParams::draw_gpu_cycles>("Time to set the pipeline up for a draw call")
                 .unit("cycles")
                 .at_most(10000000)};
@@ -33,7 +35,8 @@ struct CommandProcessorStats {
     static constexpr auto fields() {
         using S = CommandProcessorStats;
         return std::tuple{
-            sim::field<&S::draws>("Draw calls").unit("draws"), sim::field<&S::instances>("Instances drawn").unit("draws"),
+            sim::field<&S::draws>("Draw calls").unit("draws"),
+            sim::field<&S::instances>("Instances drawn").unit("draws"),
             sim::field<&S::cpu_wait_cycles>("Time the next draw call had not been submitted yet").unit("cycles")};
     }
 };
@@ -42,7 +45,7 @@ static_assert(sim::fully_described<CommandProcessorStats>);
 class CommandProcessor final : public sim::Component {
   public:
     using Params = CommandProcessorParams;
-    using Stats  = CommandProcessorStats;
+    using Stats = CommandProcessorStats;
 
     sim::Out<DrawCommand> draws_out{*this, "draws_out"};
 
@@ -51,24 +54,24 @@ class CommandProcessor final : public sim::Component {
     /// Begins with the first range of the pass at the next clock edge. Called between runs.
     void start();
 
-    const Stats&  stats() const { return stats_; }
+    const Stats& stats() const { return stats_; }
     const Params& params() const { return params_; }
 
   private:
     sim::Activity tick() override;
-    bool          begins_call() const; ///< range next_ is the first instance of its draw call
-    bool          take();              ///< false: not submitted yet
+    bool begins_call() const; ///< range next_ is the first instance of its draw call
+    bool take();              ///< false: not submitted yet
 
-    Params              params_;
+    Params params_;
     const GeometryPass* pass_;
-    Stats               stats_;
-    bool                starting_  = false;
-    sim::Time           start_     = 0;     ///< first edge of the pass
-    std::uint32_t       next_      = 0;     ///< range to be sent next
-    std::uint32_t       calls_     = 0;     ///< draw calls begun in this pass
-    bool                taken_     = false; ///< range next_ is being set up
-    sim::Cycle          free_      = 0;     ///< edge at which the range before it left
-    sim::Cycle          set_up_at_ = 0;
+    Stats stats_;
+    bool starting_ = false;
+    sim::Time start_ = 0;     ///< first edge of the pass
+    std::uint32_t next_ = 0;  ///< range to be sent next
+    std::uint32_t calls_ = 0; ///< draw calls begun in this pass
+    bool taken_ = false;      ///< range next_ is being set up
+    sim::Cycle free_ = 0;     ///< edge at which the range before it left
+    sim::Cycle set_up_at_ = 0;
 };
 
 } // namespace pipeline

@@ -18,8 +18,8 @@ sim::ChannelConfig link_of(std::uint32_t width, sim::Cycle latency = 1) {
 
 void expect_within_interleave(const char* key, std::uint32_t line, const MemorySystem& memory) {
     if (line > memory.params().interleave)
-        throw sim::InputError(fmt::format("{}: expected at most memory.interleave = {}, got {}", key,
-                                          memory.params().interleave, line));
+        throw sim::InputError(
+            fmt::format("{}: expected at most memory.interleave = {}, got {}", key, memory.params().interleave, line));
 }
 
 std::uint64_t at_or_zero(const std::vector<std::uint64_t>& values, std::uint32_t index) {
@@ -44,8 +44,8 @@ GeometryFront::GeometryFront(sim::Simulation& simulation, const sim::Clock& cloc
       clip_cull_(simulation.context("geometry.clip_cull", clock), params.clip_cull, pass_),
       triangle_setup_(simulation.context("geometry.triangle_setup", clock), params.triangle_setup) {
     if (needs.index_buffer)
-        index_fetch_ = std::make_unique<IndexFetch>(simulation.context("geometry.index_fetch", clock),
-                                                    params.index_fetch, pass_);
+        index_fetch_ =
+            std::make_unique<IndexFetch>(simulation.context("geometry.index_fetch", clock), params.index_fetch, pass_);
     else
         primitive_counter_ =
             std::make_unique<PrimitiveCounter>(simulation.context("geometry.primitive_counter", clock), pass_);
@@ -65,7 +65,7 @@ void GeometryFront::link_index_path() {
 }
 
 void GeometryFront::link_vertex_path(const GeometryParams& params) {
-    const std::uint32_t shaded    = params.vertex_shader.vertices_per_clk();
+    const std::uint32_t shaded = params.vertex_shader.vertices_per_clk();
     const std::uint32_t assembled = params.primitive_assembly.primitives_per_clk;
     connect(vertex_reuse_.vertices_out, vertex_fetch_.vertices_in, link_of(params.vertex_reuse.vertices_per_clk));
     connect(vertex_fetch_.vertices_out, vertex_shader_.vertices_in, link_of(shaded, params.vertex_fetch.hit_latency));
@@ -89,7 +89,8 @@ void GeometryFront::start(const FragmentStream& stream, std::span<const Draw> dr
     start(stream, draws, stream.draws);
 }
 
-void GeometryFront::start(const FragmentStream& stream, std::span<const Draw> draws, std::span<const DrawRange> ranges) {
+void GeometryFront::start(const FragmentStream& stream, std::span<const Draw> draws,
+                          std::span<const DrawRange> ranges) {
     pass_ = {pass_.number + 1, &stream, frame_->resources.get(), draws, ranges};
     command_processor_.start();
 }
@@ -103,16 +104,16 @@ GeometryStats GeometryFront::stats() const {
 
 GeometryDrawStats GeometryFront::draw_stats(std::uint32_t draw) const {
     const VertexReuseStats reuse = at_or_empty(vertex_reuse_.draw_stats(), draw);
-    const ClipCullStats    clip  = at_or_empty(clip_cull_.draw_stats(), draw);
-    const std::uint64_t    index_bytes = index_fetch_ == nullptr ? 0 : at_or_zero(index_fetch_->draw_bytes(), draw);
-    return {.primitives          = reuse.primitives,
+    const ClipCullStats clip = at_or_empty(clip_cull_.draw_stats(), draw);
+    const std::uint64_t index_bytes = index_fetch_ == nullptr ? 0 : at_or_zero(index_fetch_->draw_bytes(), draw);
+    return {.primitives = reuse.primitives,
             .vertices_referenced = {reuse.hits + reuse.misses},
-            .vertex_shader_runs  = reuse.misses,
-            .culled              = {clip.culled()},
-            .clipped             = clip.clipped,
-            .triangles           = clip.triangles,
-            .index_bytes         = {index_bytes},
-            .vertex_bytes        = {at_or_zero(vertex_fetch_.draw_bytes(), draw)}};
+            .vertex_shader_runs = reuse.misses,
+            .culled = {clip.culled()},
+            .clipped = clip.clipped,
+            .triangles = clip.triangles,
+            .index_bytes = {index_bytes},
+            .vertex_bytes = {at_or_zero(vertex_fetch_.draw_bytes(), draw)}};
 }
 
 nlohmann::ordered_json GeometryFront::report() const {
@@ -122,12 +123,12 @@ nlohmann::ordered_json GeometryFront::report() const {
         report["index_fetch"] = unit_report(*index_fetch_);
     else
         report["primitive_counter"] = unit_report(*primitive_counter_);
-    report["vertex_reuse"]       = unit_report(vertex_reuse_);
-    report["vertex_fetch"]       = unit_report(vertex_fetch_);
-    report["vertex_shader"]      = unit_report(vertex_shader_);
+    report["vertex_reuse"] = unit_report(vertex_reuse_);
+    report["vertex_fetch"] = unit_report(vertex_fetch_);
+    report["vertex_shader"] = unit_report(vertex_shader_);
     report["primitive_assembly"] = unit_report(primitive_assembly_);
-    report["clip_cull"]          = unit_report(clip_cull_);
-    report["triangle_setup"]     = unit_report(triangle_setup_);
+    report["clip_cull"] = unit_report(clip_cull_);
+    report["triangle_setup"] = unit_report(triangle_setup_);
     return report;
 }
 

@@ -1,6 +1,7 @@
 // The front half of the GPU, from the draw call to the triangle that is ready to be rasterized.
 //
-//   command processor -> index fetch -> vertex reuse ----------------------> primitive assembly -> clip and cull -> setup
+//   command processor -> index fetch -> vertex reuse ----------------------> primitive assembly -> clip and cull ->
+//   setup
 //                        (or counter)      `-> vertex fetch -> vertex shader -'
 //
 // The index fetch unit is built only for frames that read an index buffer.
@@ -23,14 +24,14 @@ namespace pipeline {
 class MemorySystem;
 
 struct GeometryParams {
-    CommandProcessorParams  command_processor;
-    IndexFetchParams        index_fetch;
-    VertexReuseParams       vertex_reuse;
-    VertexFetchParams       vertex_fetch;
-    VertexShaderParams      vertex_shader;
+    CommandProcessorParams command_processor;
+    IndexFetchParams index_fetch;
+    VertexReuseParams vertex_reuse;
+    VertexFetchParams vertex_fetch;
+    VertexShaderParams vertex_shader;
     PrimitiveAssemblyParams primitive_assembly;
-    ClipCullParams          clip_cull;
-    TriangleSetupParams     triangle_setup;
+    ClipCullParams clip_cull;
+    TriangleSetupParams triangle_setup;
 
     static constexpr auto fields() {
         using P = GeometryParams;
@@ -48,14 +49,14 @@ static_assert(sim::fully_described<GeometryParams>);
 
 /// Counters of all stages; two copies can be subtracted (sim::difference) to get those of a pass.
 struct GeometryStats {
-    CommandProcessorStats  command_processor;
-    IndexFetchStats        index_fetch; ///< of the primitive counter when that is built instead
-    VertexReuseStats       vertex_reuse;
-    VertexFetchStats       vertex_fetch;
-    VertexShaderStats      vertex_shader;
+    CommandProcessorStats command_processor;
+    IndexFetchStats index_fetch; ///< of the primitive counter when that is built instead
+    VertexReuseStats vertex_reuse;
+    VertexFetchStats vertex_fetch;
+    VertexShaderStats vertex_shader;
     PrimitiveAssemblyStats primitive_assembly;
-    ClipCullStats          clip_cull;
-    TriangleSetupStats     triangle_setup;
+    ClipCullStats clip_cull;
+    TriangleSetupStats triangle_setup;
 
     static constexpr auto fields() {
         using S = GeometryStats;
@@ -73,7 +74,8 @@ static_assert(sim::fully_described<GeometryStats>);
 
 /// What one draw, all instances and passes together, cost the front.
 struct GeometryDrawStats {
-    sim::Counter primitives, vertices_referenced, vertex_shader_runs, culled, clipped, triangles, index_bytes, vertex_bytes;
+    sim::Counter primitives, vertices_referenced, vertex_shader_runs, culled, clipped, triangles, index_bytes,
+        vertex_bytes;
 
     /// Shader runs per primitive; 0 without primitives.
     double acmr() const {
@@ -100,22 +102,22 @@ class GeometryFront {
   public:
     /// Builds what `needs` asks for; components are named "geometry.command_processor" and so on. `frame` must outlive
     /// this.
-    GeometryFront(sim::Simulation& simulation, const sim::Clock& clock, const GeometryParams& params, const Frame& frame,
-                  const Needs& needs);
+    GeometryFront(sim::Simulation& simulation, const sim::Clock& clock, const GeometryParams& params,
+                  const Frame& frame, const Needs& needs);
 
     /// Links the memory ports to the crossbar.
     void attach(MemorySystem& memory);
     /// To be linked to the rasterizer.
     sim::Out<TriangleTask>& triangles_out() { return triangle_setup_.triangles_out; }
 
-    /// Begins a pass at the next clock edge; then call Simulation::run(). `draws` is the list that DrawRange::draw counts
-    /// (and to which memory traffic is booked); `ranges`, some of stream.draws in order, or all of them, is what to draw.
-    /// Everything must stay unchanged until the run ends.
+    /// Begins a pass at the next clock edge; then call Simulation::run(). `draws` is the list that DrawRange::draw
+    /// counts (and to which memory traffic is booked); `ranges`, some of stream.draws in order, or all of them, is what
+    /// to draw. Everything must stay unchanged until the run ends.
     void start(const FragmentStream& stream, std::span<const Draw> draws);
     void start(const FragmentStream& stream, std::span<const Draw> draws, std::span<const DrawRange> ranges);
 
-    bool              has_index_fetch() const { return index_fetch_ != nullptr; }
-    GeometryStats     stats() const;
+    bool has_index_fetch() const { return index_fetch_ != nullptr; }
+    GeometryStats stats() const;
     GeometryDrawStats draw_stats(std::uint32_t draw) const;
     /// Stage name -> params, counters, activity in cycles; only stages that are built.
     nlohmann::ordered_json report() const;
@@ -124,17 +126,17 @@ class GeometryFront {
     void link_index_path();
     void link_vertex_path(const GeometryParams& params);
 
-    const Frame*                      frame_;
-    GeometryPass                      pass_;
-    CommandProcessor                  command_processor_;
-    std::unique_ptr<IndexFetch>       index_fetch_;
+    const Frame* frame_;
+    GeometryPass pass_;
+    CommandProcessor command_processor_;
+    std::unique_ptr<IndexFetch> index_fetch_;
     std::unique_ptr<PrimitiveCounter> primitive_counter_;
-    VertexReuse                       vertex_reuse_;
-    VertexFetch                       vertex_fetch_;
-    VertexShader                      vertex_shader_;
-    PrimitiveAssembly                 primitive_assembly_;
-    ClipCull                          clip_cull_;
-    TriangleSetup                     triangle_setup_;
+    VertexReuse vertex_reuse_;
+    VertexFetch vertex_fetch_;
+    VertexShader vertex_shader_;
+    PrimitiveAssembly primitive_assembly_;
+    ClipCull clip_cull_;
+    TriangleSetup triangle_setup_;
 };
 
 } // namespace pipeline

@@ -9,15 +9,15 @@
 namespace pipeline {
 
 struct GeometryPass {
-    std::uint32_t              number    = 0; ///< passes started so far; 0: none
-    const FragmentStream*      stream    = nullptr;
-    const Resources*           resources = nullptr;
-    std::span<const Draw>      draws;  ///< what DrawRange::draw counts
+    std::uint32_t number = 0; ///< passes started so far; 0: none
+    const FragmentStream* stream = nullptr;
+    const Resources* resources = nullptr;
+    std::span<const Draw> draws;       ///< what DrawRange::draw counts
     std::span<const DrawRange> ranges; ///< those to walk; a message's `range` is an index into it
 
     const DrawRange& range(std::uint32_t index) const { return ranges[index]; }
-    const Draw&      draw(std::uint32_t range) const { return draws[ranges[range].draw]; }
-    const Geometry&  geometry(std::uint32_t range) const { return resources->geometries[draw(range).geometry]; }
+    const Draw& draw(std::uint32_t range) const { return draws[ranges[range].draw]; }
+    const Geometry& geometry(std::uint32_t range) const { return resources->geometries[draw(range).geometry]; }
 };
 
 } // namespace pipeline

@@ -8,8 +8,8 @@ namespace pipeline {
 namespace {
 
 constexpr std::uint64_t parts_of_a_byte = 1024;
-constexpr std::size_t   draws_ahead     = 4; ///< draws whose lines may be requested while an earlier one is sent
-constexpr std::uint32_t largest_read    = 3 * bytes_of(IndexType::u32);
+constexpr std::size_t draws_ahead = 4; ///< draws whose lines may be requested while an earlier one is sent
+constexpr std::uint32_t largest_read = 3 * bytes_of(IndexType::u32);
 
 void book(std::vector<std::uint64_t>& by_draw, std::uint32_t draw, std::uint64_t amount) {
     if (draw >= by_draw.size()) by_draw.resize(draw + 1);
@@ -19,28 +19,31 @@ void book(std::vector<std::uint64_t>& by_draw, std::uint32_t draw, std::uint64_t
 } // namespace
 
 IndexFetch::IndexFetch(sim::Context context, const Params& params, const GeometryPass& pass)
-    : Component(std::move(context)), params_(params), pass_(&pass), here_(std::bit_ceil(params.lines_in_flight)),
+    : Component(std::move(context)),
+      params_(params),
+      pass_(&pass),
+      here_(std::bit_ceil(params.lines_in_flight)),
       rate_(static_cast<std::uint64_t>(params.bytes_per_clk * parts_of_a_byte + 0.5)) {
     if (!std::has_single_bit(params.line)) throw sim::InputError("index_fetch.line: expected a power of two");
 }
 
 IndexFetch::Work IndexFetch::work_of(std::uint32_t range_number) {
-    const DrawRange& range    = pass_->range(range_number);
-    const Geometry&  geometry = pass_->geometry(range_number);
+    const DrawRange& range = pass_->range(range_number);
+    const Geometry& geometry = pass_->geometry(range_number);
     CHECK(range.primitives <= geometry.triangle_count());
-    Work work{.reader          = PrimitiveReader(*pass_->resources, geometry),
-              .topology        = geometry.topology,
+    Work work{.reader = PrimitiveReader(*pass_->resources, geometry),
+              .topology = geometry.topology,
               .first_primitive = range.first_primitive,
-              .range           = range_number,
-              .index_bytes     = bytes_of(geometry.index_type),
-              .primitives      = range.primitives,
-              .first_line      = lines_,
-              .end_line        = lines_};
+              .range = range_number,
+              .index_bytes = bytes_of(geometry.index_type),
+              .primitives = range.primitives,
+              .first_line = lines_,
+              .end_line = lines_};
     if (work.index_bytes == 0 || work.primitives == 0) return work;
     const std::uint64_t first = pass_->resources->buffers[geometry.index_buffer].address + geometry.index_offset;
     const std::uint64_t bytes = std::uint64_t{work.index_bytes} * work.indices_needed(work.primitives - 1);
-    work.address              = first / params_.line * params_.line;
-    work.skip                 = static_cast<std::uint32_t>(first % params_.line);
+    work.address = first / params_.line * params_.line;
+    work.skip = static_cast<std::uint32_t>(first % params_.line);
     work.end_line += (work.skip + bytes + params_.line - 1) / params_.line;
     return work;
 }
@@ -73,14 +76,14 @@ bool IndexFetch::request_lines() {
     bool progress = false;
     while (requested_ < lines_ && requested_ - used_up_ < params_.lines_in_flight && requests_out.ready()) {
         while (work_[requesting_].end_line <= requested_) ++requesting_;
-        const Work&         work = work_[requesting_];
+        const Work& work = work_[requesting_];
         const std::uint32_t draw = pass_->range(work.range).draw;
         requests_out.send({.address = work.address + (requested_ - work.first_line) * params_.line,
-                           .bytes   = params_.line,
-                           .tag     = static_cast<std::uint32_t>(requested_),
-                           .draw    = draw,
-                           .client  = MemoryClient::index,
-                           .write   = false});
+                           .bytes = params_.line,
+                           .tag = static_cast<std::uint32_t>(requested_),
+                           .draw = draw,
+                           .client = MemoryClient::index,
+                           .write = false});
         ++requested_;
         ++stats_.lines;
         stats_.bytes += params_.line;
@@ -97,7 +100,7 @@ std::uint64_t IndexFetch::line_of(const Work& work, std::uint32_t index) const {
 
 bool IndexFetch::spend(std::uint32_t bytes) {
     const std::uint64_t cost = bytes * parts_of_a_byte;
-    credit_   = std::min(rate_ + largest_read * parts_of_a_byte, credit_ + (cycle() - credited_) * rate_);
+    credit_ = std::min(rate_ + largest_read * parts_of_a_byte, credit_ + (cycle() - credited_) * rate_);
     credited_ = cycle();
     if (credit_ < cost) {
         wake_in((cost - credit_ + rate_ - 1) / rate_);
@@ -116,7 +119,8 @@ void IndexFetch::finish_draw() {
 sim::Activity IndexFetch::send_primitive() {
     Work& work = work_.front();
     if (work.index_bytes != 0) {
-        const std::uint64_t last_byte = work.skip + std::uint64_t{work.indices_needed(work.next)} * work.index_bytes - 1;
+        const std::uint64_t last_byte =
+            work.skip + std::uint64_t{work.indices_needed(work.next)} * work.index_bytes - 1;
         if (work.first_line + last_byte / params_.line >= arrived_) return sim::Activity::memory;
     }
     if (!primitives_out.ready()) return sim::Activity::blocked;

@@ -1,8 +1,8 @@
 // What travels between the stages of the geometry front.
 //
-// A `range` is one instance of one draw: an index into the ranges of the pass (geometry_pass.hpp). Primitives and triangles
-// are numbered as in the stream. A shaded vertex is known by its sequence number: the running count of vertex shader
-// runs, beginning with 1.
+// A `range` is one instance of one draw: an index into the ranges of the pass (geometry_pass.hpp). Primitives and
+// triangles are numbered as in the stream. A shaded vertex is known by its sequence number: the running count of vertex
+// shader runs, beginning with 1.
 #pragma once
 
 #include <array>
@@ -17,22 +17,22 @@ struct DrawCommand {
 
 /// Index fetch -> vertex reuse: a primitive with the numbers of its vertices within the draw's geometry.
 struct IndexedPrimitive {
-    std::uint32_t                primitive = 0;
-    std::uint32_t                range     = 0;
+    std::uint32_t primitive = 0;
+    std::uint32_t range = 0;
     std::array<std::uint32_t, 3> vertices{};
 };
 
 /// Vertex reuse -> vertex fetch: a vertex that has to be shaded.
 struct VertexRequest {
     std::uint32_t sequence = 0;
-    std::uint32_t range    = 0;
-    std::uint32_t vertex   = 0;
+    std::uint32_t range = 0;
+    std::uint32_t vertex = 0;
 };
 
 /// Vertex reuse -> primitive assembly: a primitive with the sequence numbers of its shaded vertices.
 struct ReusedPrimitive {
-    std::uint32_t                primitive = 0;
-    std::uint32_t                range     = 0;
+    std::uint32_t primitive = 0;
+    std::uint32_t range = 0;
     std::array<std::uint32_t, 3> sequences{};
 };
 
@@ -44,7 +44,7 @@ struct VertexTask {
 /// Primitive assembly -> clipping and culling.
 struct AssembledPrimitive {
     std::uint32_t primitive = 0;
-    std::uint32_t range     = 0;
+    std::uint32_t range = 0;
 };
 
 /// Clipping and culling -> triangle setup -> rasterizer: an index into FragmentStream::triangles.

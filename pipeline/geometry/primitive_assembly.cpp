@@ -18,7 +18,7 @@ sim::Activity PrimitiveAssembly::tick() {
     }
     while (const ReusedPrimitive* primitive = primitives_in.peek()) {
         const auto& sequences = primitive->sequences;
-        const bool  complete  = std::max({sequences[0], sequences[1], sequences[2]}) <= received_;
+        const bool complete = std::max({sequences[0], sequences[1], sequences[2]}) <= received_;
         if (!complete) return progress ? sim::Activity::busy : sim::Activity::memory;
         if (!primitives_out.ready()) return progress ? sim::Activity::busy : sim::Activity::blocked;
         primitives_out.send({primitive->primitive, primitive->range});

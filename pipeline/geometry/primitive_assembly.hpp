@@ -13,7 +13,7 @@
 namespace pipeline {
 
 struct PrimitiveAssemblyParams {
-    std::uint32_t primitives_per_clk   = 1;
+    std::uint32_t primitives_per_clk = 1;
     std::uint32_t primitives_in_flight = 512;
 
     static constexpr auto fields() {
@@ -41,22 +41,22 @@ static_assert(sim::fully_described<PrimitiveAssemblyStats>);
 class PrimitiveAssembly final : public sim::Component {
   public:
     using Params = PrimitiveAssemblyParams;
-    using Stats  = PrimitiveAssemblyStats;
+    using Stats = PrimitiveAssemblyStats;
 
-    sim::In<ReusedPrimitive>     primitives_in{*this, "primitives_in"};
-    sim::In<VertexTask>          vertices_in{*this, "vertices_in"};
+    sim::In<ReusedPrimitive> primitives_in{*this, "primitives_in"};
+    sim::In<VertexTask> vertices_in{*this, "vertices_in"};
     sim::Out<AssembledPrimitive> primitives_out{*this, "primitives_out"};
 
     PrimitiveAssembly(sim::Context context, const Params& params);
 
-    const Stats&  stats() const { return stats_; }
+    const Stats& stats() const { return stats_; }
     const Params& params() const { return params_; }
 
   private:
     sim::Activity tick() override;
 
-    Params        params_;
-    Stats         stats_;
+    Params params_;
+    Stats stats_;
     std::uint32_t received_ = 0; ///< sequence number of the last vertex received
 };
 

@@ -2,7 +2,8 @@
 
 namespace pipeline {
 
-TriangleSetup::TriangleSetup(sim::Context context, const Params& params) : Component(std::move(context)), params_(params) {}
+TriangleSetup::TriangleSetup(sim::Context context, const Params& params)
+    : Component(std::move(context)), params_(params) {}
 
 sim::Activity TriangleSetup::tick() {
     bool progress = false;
@@ -16,7 +17,7 @@ sim::Activity TriangleSetup::tick() {
     if (const TriangleTask* task = triangles_in.peek()) {
         present_ = *task;
         triangles_in.pop();
-        done_    = cycle() + params_.cycles_per_triangle;
+        done_ = cycle() + params_.cycles_per_triangle;
         holding_ = true;
         ++stats_.triangles;
         progress = true;

@@ -15,7 +15,8 @@ struct TriangleSetupParams {
     std::uint32_t cycles_per_triangle = 2;
 
     static constexpr auto fields() {
-        return std::tuple{sim::field<&TriangleSetupParams::cycles_per_triangle>("Time of a triangle").unit("cycles").range(1, 10000)};
+        return std::tuple{
+            sim::field<&TriangleSetupParams::cycles_per_triangle>("Time of a triangle").unit("cycles").range(1, 10000)};
     }
 };
 static_assert(sim::fully_described<TriangleSetupParams>);
@@ -32,24 +33,24 @@ static_assert(sim::fully_described<TriangleSetupStats>);
 class TriangleSetup final : public sim::Component {
   public:
     using Params = TriangleSetupParams;
-    using Stats  = TriangleSetupStats;
+    using Stats = TriangleSetupStats;
 
-    sim::In<TriangleTask>  triangles_in{*this, "triangles_in"};
+    sim::In<TriangleTask> triangles_in{*this, "triangles_in"};
     sim::Out<TriangleTask> triangles_out{*this, "triangles_out"};
 
     TriangleSetup(sim::Context context, const Params& params);
 
-    const Stats&  stats() const { return stats_; }
+    const Stats& stats() const { return stats_; }
     const Params& params() const { return params_; }
 
   private:
     sim::Activity tick() override;
 
-    Params       params_;
-    Stats        stats_;
-    bool         holding_ = false; ///< present_ is being set up or waits to leave
+    Params params_;
+    Stats stats_;
+    bool holding_ = false; ///< present_ is being set up or waits to leave
     TriangleTask present_;
-    sim::Cycle   done_ = 0;
+    sim::Cycle done_ = 0;
 };
 
 } // namespace pipeline

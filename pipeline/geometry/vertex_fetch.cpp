@@ -7,19 +7,29 @@ namespace pipeline {
 
 bool reads_attribute(const Needs& needs, const Material& material, Semantic semantic) {
     switch (semantic) {
-    case Semantic::position: return true;
-    case Semantic::normal: return needs.normals;
-    case Semantic::colour: return needs.vertex_colours;
-    case Semantic::texcoord0: return needs.texcoords && material.texcoord == 0;
-    case Semantic::texcoord1: return needs.texcoords && material.texcoord == 1;
+    case Semantic::position:
+        return true;
+    case Semantic::normal:
+        return needs.normals;
+    case Semantic::colour:
+        return needs.vertex_colours;
+    case Semantic::texcoord0:
+        return needs.texcoords && material.texcoord == 0;
+    case Semantic::texcoord1:
+        return needs.texcoords && material.texcoord == 1;
     }
     return false;
 }
 
 VertexFetch::VertexFetch(sim::Context context, const Params& params, const GeometryPass& pass, const Needs& needs)
-    : Component(std::move(context)), params_(params), pass_(&pass), needs_(needs),
-      cache_(params.cache, "vertex_fetch.cache"), fill_of_(cache_.slots(), 0),
-      here_(std::bit_ceil(params.lines_in_flight)), waiting_(params.vertices_in_flight) {}
+    : Component(std::move(context)),
+      params_(params),
+      pass_(&pass),
+      needs_(needs),
+      cache_(params.cache, "vertex_fetch.cache"),
+      fill_of_(cache_.slots(), 0),
+      here_(std::bit_ceil(params.lines_in_flight)),
+      waiting_(params.vertices_in_flight) {}
 
 VertexFetch::Stats VertexFetch::stats() const {
     Stats stats = stats_;
@@ -29,7 +39,7 @@ VertexFetch::Stats VertexFetch::stats() const {
 
 void VertexFetch::begin_range(std::uint32_t range) {
     const Resources& resources = *pass_->resources;
-    const Material&  material  = resources.materials[pass_->draw(range).material];
+    const Material& material = resources.materials[pass_->draw(range).material];
     streams_.clear();
     for (const VertexAttribute& attribute : pass_->geometry(range).attributes)
         if (reads_attribute(needs_, material, attribute.semantic))
@@ -38,29 +48,29 @@ void VertexFetch::begin_range(std::uint32_t range) {
     // Attributes that lie side by side share lines; in order of address a shared one is the last line looked up.
     std::sort(streams_.begin(), streams_.end(), [](const Stream& a, const Stream& b) { return a.address < b.address; });
     pass_number_ = pass_->number;
-    range_       = range;
-    draw_        = pass_->range(range).draw;
+    range_ = range;
+    draw_ = pass_->range(range).draw;
     if (draw_ >= draw_bytes_.size()) draw_bytes_.resize(draw_ + 1);
 }
 
 void VertexFetch::begin_vertex(const VertexRequest& request) {
     if (request.range != range_ || pass_->number != pass_number_) begin_range(request.range);
-    present_  = {request.sequence, 0};
-    vertex_   = request.vertex;
-    stream_   = 0;
-    line_     = 0;
+    present_ = {request.sequence, 0};
+    vertex_ = request.vertex;
+    stream_ = 0;
+    line_ = 0;
     end_line_ = 0;
-    holding_  = true;
+    holding_ = true;
 }
 
 // Leaves in line_ the next line of the present vertex; false when there is none.
 bool VertexFetch::next_line() {
     while (line_ == end_line_) {
         if (stream_ == streams_.size()) return false;
-        const Stream&       stream = streams_[stream_];
-        const std::uint64_t first  = stream.address + std::uint64_t{vertex_} * stream.stride;
-        const std::uint64_t end    = cache_.line_of(first + stream.bytes - 1) + 1;
-        line_                      = cache_.line_of(first);
+        const Stream& stream = streams_[stream_];
+        const std::uint64_t first = stream.address + std::uint64_t{vertex_} * stream.stride;
+        const std::uint64_t end = cache_.line_of(first + stream.bytes - 1) + 1;
+        line_ = cache_.line_of(first);
         if (stream_ > 0 && line_ + 1 == end_line_) ++line_; // looked up for the attribute before
         end_line_ = end;
         ++stream_;
@@ -79,13 +89,13 @@ bool VertexFetch::look_up_line(std::uint64_t line) {
     }
     if (fills_ - filled_ >= params_.lines_in_flight || !requests_out.ready()) return false;
     fill_of_[cache_.access(line).slot] = ++fills_;
-    present_.last_fill                 = fills_;
+    present_.last_fill = fills_;
     requests_out.send({.address = line * cache_.line_bytes(),
-                       .bytes   = cache_.line_bytes(),
-                       .tag     = static_cast<std::uint32_t>(fills_),
-                       .draw    = draw_,
-                       .client  = MemoryClient::vertex,
-                       .write   = false});
+                       .bytes = cache_.line_bytes(),
+                       .tag = static_cast<std::uint32_t>(fills_),
+                       .draw = draw_,
+                       .client = MemoryClient::vertex,
+                       .write = false});
     stats_.bytes += cache_.line_bytes();
     stats_.lines_in_flight.note(fills_ - filled_);
     draw_bytes_[draw_] += cache_.line_bytes();

@@ -1,11 +1,11 @@
 // The vertex fetch unit with its pre-transform cache, between memory and the vertex shaders.
 //
 // Modelled: the byte ranges of the attributes that the frame reads, cut into lines; lines shared by neighbouring
-// attributes of one vertex are looked up once; a line cache whose tags are set when a miss is sent, so that later accesses
-// wait for the same fill; bounded misses and vertices on their way; delivery in order.
-// Not modelled: format conversion; the range limit of a draw (specification 004, section 5, M1-M3).
-// Sources: specification 004, sections 2.1, 5, 9.2; the latency-hiding FIFO between tags and data is that of Igehy,
-// Eldridge, Proudfoot, "Prefetching in a Texture Cache Architecture", 1998.
+// attributes of one vertex are looked up once; a line cache whose tags are set when a miss is sent, so that later
+// accesses wait for the same fill; bounded misses and vertices on their way; delivery in order. Not modelled: format
+// conversion; the range limit of a draw (specification 004, section 5, M1-M3). Sources: specification 004,
+// sections 2.1, 5, 9.2; the latency-hiding FIFO between tags and data is that of Igehy, Eldridge, Proudfoot,
+// "Prefetching in a Texture Cache Architecture", 1998.
 #pragma once
 
 #include "pipeline/fixed_queue.hpp"
@@ -19,11 +19,11 @@
 namespace pipeline {
 
 struct VertexFetchParams {
-    CacheParams   cache{.bytes = 16384, .line = 32, .ways = 4};
-    std::uint32_t lines_per_clk      = 4;
-    std::uint32_t lines_in_flight    = 256;
+    CacheParams cache{.bytes = 16384, .line = 32, .ways = 4};
+    std::uint32_t lines_per_clk = 4;
+    std::uint32_t lines_in_flight = 256;
     std::uint32_t vertices_in_flight = 512;
-    std::uint32_t hit_latency        = 4;
+    std::uint32_t hit_latency = 4;
 
     static constexpr auto fields() {
         using P = VertexFetchParams;
@@ -32,14 +32,16 @@ struct VertexFetchParams {
             sim::field<&P::lines_per_clk>("Lines looked up").unit("lines/cycle").range(1, 64),
             sim::field<&P::lines_in_flight>("Lines requested and not arrived").unit("lines").range(1, 65536),
             sim::field<&P::vertices_in_flight>("Vertices looked up and not delivered").unit("vertices").range(1, 65536),
-            sim::field<&P::hit_latency>("From the tags to the shader when all lines are held").unit("cycles").range(1, 1000)};
+            sim::field<&P::hit_latency>("From the tags to the shader when all lines are held")
+                .unit("cycles")
+                .range(1, 1000)};
     }
 };
 static_assert(sim::fully_described<VertexFetchParams>);
 
 struct VertexFetchStats {
-    CacheStats     cache;
-    sim::Counter   vertices, merged, bytes;
+    CacheStats cache;
+    sim::Counter vertices, merged, bytes;
     sim::HighWater vertices_in_flight, lines_in_flight;
 
     static constexpr auto fields() {
@@ -61,16 +63,16 @@ bool reads_attribute(const Needs& needs, const Material& material, Semantic sema
 class VertexFetch final : public sim::Component {
   public:
     using Params = VertexFetchParams;
-    using Stats  = VertexFetchStats;
+    using Stats = VertexFetchStats;
 
-    sim::In<VertexRequest>   vertices_in{*this, "vertices_in"};
-    sim::Out<MemoryRequest>  requests_out{*this, "requests_out"};
-    sim::In<MemoryResponse>  responses_in{*this, "responses_in"};
-    sim::Out<VertexTask>     vertices_out{*this, "vertices_out"};
+    sim::In<VertexRequest> vertices_in{*this, "vertices_in"};
+    sim::Out<MemoryRequest> requests_out{*this, "requests_out"};
+    sim::In<MemoryResponse> responses_in{*this, "responses_in"};
+    sim::Out<VertexTask> vertices_out{*this, "vertices_out"};
 
     VertexFetch(sim::Context context, const Params& params, const GeometryPass& pass, const Needs& needs);
 
-    Stats         stats() const;
+    Stats stats() const;
     const Params& params() const { return params_; }
     /// Bytes requested, by draw; draws not seen may be missing at the end.
     const std::vector<std::uint64_t>& draw_bytes() const { return draw_bytes_; }
@@ -79,48 +81,48 @@ class VertexFetch final : public sim::Component {
     /// Bytes of vertex 0 of one attribute, and the distance to those of vertex 1.
     struct Stream {
         std::uint64_t address = 0;
-        std::uint32_t stride  = 0;
-        std::uint32_t bytes   = 0;
+        std::uint32_t stride = 0;
+        std::uint32_t bytes = 0;
     };
     /// A vertex that has been looked up: complete when fill `last_fill` and all before it have arrived.
     struct Waiting {
-        std::uint32_t sequence  = 0;
+        std::uint32_t sequence = 0;
         std::uint64_t last_fill = 0;
     };
 
     sim::Activity tick() override;
-    bool          take_fills();
-    bool          deliver();
-    bool          look_up();
-    bool          look_up_line(std::uint64_t line);
-    void          begin_range(std::uint32_t range);
-    void          begin_vertex(const VertexRequest& request);
-    bool          next_line();
-    bool          deliverable() { return !waiting_.empty() && waiting_.front().last_fill <= filled_; }
+    bool take_fills();
+    bool deliver();
+    bool look_up();
+    bool look_up_line(std::uint64_t line);
+    void begin_range(std::uint32_t range);
+    void begin_vertex(const VertexRequest& request);
+    bool next_line();
+    bool deliverable() { return !waiting_.empty() && waiting_.front().last_fill <= filled_; }
 
-    Params                     params_;
-    const GeometryPass*        pass_;
-    Needs                      needs_;
-    Cache                      cache_;
-    Stats                      stats_;
+    Params params_;
+    const GeometryPass* pass_;
+    Needs needs_;
+    Cache cache_;
+    Stats stats_;
     std::vector<std::uint64_t> draw_bytes_;
-    std::vector<Stream>        streams_;     ///< of the present range, by address
-    std::uint32_t              pass_number_ = 0;
-    std::uint32_t              range_       = 0;
-    std::uint32_t              draw_        = 0;
+    std::vector<Stream> streams_; ///< of the present range, by address
+    std::uint32_t pass_number_ = 0;
+    std::uint32_t range_ = 0;
+    std::uint32_t draw_ = 0;
 
-    std::vector<std::uint64_t> fill_of_;     ///< by cache slot: the fill that brings its line
-    std::vector<bool>          here_;        ///< ring over fill numbers: the line has arrived
-    std::uint64_t              fills_ = 0;   ///< fills requested; they are numbered from 1
-    std::uint64_t              filled_ = 0;  ///< this fill and all before it have arrived
+    std::vector<std::uint64_t> fill_of_; ///< by cache slot: the fill that brings its line
+    std::vector<bool> here_;             ///< ring over fill numbers: the line has arrived
+    std::uint64_t fills_ = 0;            ///< fills requested; they are numbered from 1
+    std::uint64_t filled_ = 0;           ///< this fill and all before it have arrived
 
-    FixedQueue<Waiting>        waiting_;
-    bool                       holding_ = false; ///< present_ is being looked up
-    Waiting                    present_;
-    std::uint32_t              vertex_    = 0; ///< its number
-    std::size_t                stream_    = 0; ///< first stream whose lines are not listed yet
-    std::uint64_t              line_      = 0; ///< next line to look up
-    std::uint64_t              end_line_  = 0; ///< one past the last line of the stream before stream_
+    FixedQueue<Waiting> waiting_;
+    bool holding_ = false; ///< present_ is being looked up
+    Waiting present_;
+    std::uint32_t vertex_ = 0;   ///< its number
+    std::size_t stream_ = 0;     ///< first stream whose lines are not listed yet
+    std::uint64_t line_ = 0;     ///< next line to look up
+    std::uint64_t end_line_ = 0; ///< one past the last line of the stream before stream_
 };
 
 } // namespace pipeline

@@ -9,19 +9,19 @@ VertexReuse::VertexReuse(sim::Context context, const Params& params, const Geome
 
 void VertexReuse::begin_range(std::uint32_t range) {
     const Geometry& geometry = pass_->geometry(range);
-    const bool      indexed  = geometry.index_type != IndexType::none;
+    const bool indexed = geometry.index_type != IndexType::none;
     model_.begin_draw(indexed ? geometry.vertex_count : std::max(geometry.vertex_count, geometry.index_count), indexed);
     pass_number_ = pass_->number;
-    range_       = range;
-    draw_        = pass_->range(range).draw;
+    range_ = range;
+    draw_ = pass_->range(range).draw;
     if (draw_ >= draw_stats_.size()) draw_stats_.resize(draw_ + 1);
 }
 
 void VertexReuse::look_up(const IndexedPrimitive& primitive) {
     if (primitive.range != range_ || pass_->number != pass_number_) begin_range(primitive.range);
     present_ = primitive;
-    result_  = model_.triangle(primitive.vertices);
-    unsent_  = result_.missed;
+    result_ = model_.triangle(primitive.vertices);
+    unsent_ = result_.missed;
     holding_ = true;
     const auto misses = static_cast<std::uint64_t>(std::popcount(result_.missed));
     for (Stats* stats : {&stats_, &draw_stats_[draw_]}) {
@@ -52,7 +52,7 @@ sim::Activity VertexReuse::tick() {
             progress = true;
         }
         const std::uint8_t before = unsent_;
-        const bool         sent   = send_vertices();
+        const bool sent = send_vertices();
         progress |= unsent_ != before;
         if (!sent || !primitives_out.ready()) return progress ? sim::Activity::busy : sim::Activity::blocked;
         primitives_out.send({present_.primitive, present_.range, result_.sequences});

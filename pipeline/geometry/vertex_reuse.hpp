@@ -1,9 +1,9 @@
 // The post-transform cache: finds which vertices of a primitive have been shaded already and has the others shaded.
 //
-// Modelled: one primitive a cycle; vertices to be shaded leave in order, a bounded number a cycle; the primitive follows
-// once its last vertex has left. What is held: vertex_reuse_models.hpp. Every instance begins with an empty cache.
-// Not modelled: the storage of the shaded attributes; entries do not depend on the size of a vertex.
-// Source: specification 004, sections 2.1, 9.2.
+// Modelled: one primitive a cycle; vertices to be shaded leave in order, a bounded number a cycle; the primitive
+// follows once its last vertex has left. What is held: vertex_reuse_models.hpp. Every instance begins with an empty
+// cache. Not modelled: the storage of the shaded attributes; entries do not depend on the size of a vertex. Source:
+// specification 004, sections 2.1, 9.2.
 #pragma once
 
 #include "pipeline/geometry/geometry_pass.hpp"
@@ -29,37 +29,37 @@ static_assert(sim::fully_described<VertexReuseStats>);
 class VertexReuse final : public sim::Component {
   public:
     using Params = VertexReuseParams;
-    using Stats  = VertexReuseStats;
+    using Stats = VertexReuseStats;
 
     sim::In<IndexedPrimitive> primitives_in{*this, "primitives_in"};
-    sim::Out<VertexRequest>   vertices_out{*this, "vertices_out"};
+    sim::Out<VertexRequest> vertices_out{*this, "vertices_out"};
     sim::Out<ReusedPrimitive> primitives_out{*this, "primitives_out"};
 
     VertexReuse(sim::Context context, const Params& params, const GeometryPass& pass);
 
-    const Stats&  stats() const { return stats_; }
+    const Stats& stats() const { return stats_; }
     const Params& params() const { return params_; }
     /// Stats by draw; draws not seen may be missing at the end.
     const std::vector<Stats>& draw_stats() const { return draw_stats_; }
 
   private:
     sim::Activity tick() override;
-    void          look_up(const IndexedPrimitive& primitive);
-    void          begin_range(std::uint32_t range);
-    bool          send_vertices();
+    void look_up(const IndexedPrimitive& primitive);
+    void begin_range(std::uint32_t range);
+    bool send_vertices();
 
-    Params              params_;
+    Params params_;
     const GeometryPass* pass_;
-    VertexReuseModel    model_;
-    Stats               stats_;
-    std::vector<Stats>  draw_stats_;
-    std::uint32_t       pass_number_ = 0; ///< with range_: what the cache was last emptied for
-    std::uint32_t       range_       = 0;
-    std::uint32_t       draw_        = 0;
-    bool                holding_     = false; ///< present_ has been looked up and has not left
-    std::uint8_t        unsent_      = 0;     ///< corners of present_ whose vertex still has to be sent
-    IndexedPrimitive    present_;
-    ReuseResult         result_;
+    VertexReuseModel model_;
+    Stats stats_;
+    std::vector<Stats> draw_stats_;
+    std::uint32_t pass_number_ = 0; ///< with range_: what the cache was last emptied for
+    std::uint32_t range_ = 0;
+    std::uint32_t draw_ = 0;
+    bool holding_ = false;    ///< present_ has been looked up and has not left
+    std::uint8_t unsent_ = 0; ///< corners of present_ whose vertex still has to be sent
+    IndexedPrimitive present_;
+    ReuseResult result_;
 };
 
 } // namespace pipeline

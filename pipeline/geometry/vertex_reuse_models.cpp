@@ -11,8 +11,8 @@ FifoReuse::FifoReuse(std::uint32_t entries, std::uint32_t warp_vertices, std::ui
 
 void FifoReuse::flush() {
     flushed_ = next_;
-    warp_    = 0;
-    group_   = 0;
+    warp_ = 0;
+    group_ = 0;
 }
 
 void FifoReuse::begin_draw(std::uint32_t vertex_count) {
@@ -23,7 +23,7 @@ void FifoReuse::begin_draw(std::uint32_t vertex_count) {
 ReuseResult FifoReuse::triangle(const std::array<std::uint32_t, 3>& vertices) {
     std::uint32_t misses = 0; // a vertex that occurs twice counts twice here
     for (const std::uint32_t vertex : vertices) misses += held(vertex) ? 0 : 1;
-    const bool warp_full  = warp_vertices_ != 0 && warp_ + misses > warp_vertices_;
+    const bool warp_full = warp_vertices_ != 0 && warp_ + misses > warp_vertices_;
     const bool group_full = group_triangles_ != 0 && group_ == group_triangles_;
     if (warp_full || group_full) flush();
     ReuseResult result;
@@ -61,7 +61,7 @@ ReuseResult MesaReuse::triangle(const std::array<std::uint32_t, 3>& vertices) {
         Entry& entry = entry_of(vertices[i]);
         if (entry.vertex != vertices[i] || entry.run < flushed_) {
             CHECK_MSG(next_ != 0, "2^32 vertices shaded in one run");
-            entry         = {vertices[i], next_++};
+            entry = {vertices[i], next_++};
             result.missed = static_cast<std::uint8_t>(result.missed | 1U << i);
         }
         result.sequences[i] = entry.run;
@@ -73,9 +73,12 @@ ReuseResult MesaReuse::triangle(const std::array<std::uint32_t, 3>& vertices) {
 namespace {
 std::variant<FifoReuse, MesaReuse> model_of(const VertexReuseParams& params) {
     switch (params.model) {
-    case ReuseModel::fifo: return FifoReuse(params.entries, 0, 0);
-    case ReuseModel::batch: return FifoReuse(params.entries, params.warp_vertices, params.group_triangles);
-    case ReuseModel::mesa: break;
+    case ReuseModel::fifo:
+        return FifoReuse(params.entries, 0, 0);
+    case ReuseModel::batch:
+        return FifoReuse(params.entries, params.warp_vertices, params.group_triangles);
+    case ReuseModel::mesa:
+        break;
     }
     return MesaReuse();
 }

@@ -1,9 +1,9 @@
 // Which vertices of a triangle list have been shaded already: models of the post-transform cache without time.
 //
-// Each model gives every shader run a sequence number, counting from 1, and tells for each corner of a triangle which run
-// produced it. All are exact replacements of each other.
-// Sources: specification 004, sections 2.1, 9.2; the warp and group rule is that of meshoptimizer's vertex cache
-// analyzer; the batches are what Mesa's llvmpipe was measured to do.
+// Each model gives every shader run a sequence number, counting from 1, and tells for each corner of a triangle which
+// run produced it. All are exact replacements of each other. Sources: specification 004, sections 2.1, 9.2; the warp
+// and group rule is that of meshoptimizer's vertex cache analyzer; the batches are what Mesa's llvmpipe was measured to
+// do.
 #pragma once
 
 #include "sim/described.hpp"
@@ -32,10 +32,10 @@ struct sim::EnumNames<pipeline::ReuseModel> {
 namespace pipeline {
 
 struct VertexReuseParams {
-    ReuseModel    model            = ReuseModel::fifo;
-    std::uint32_t entries          = 24;
-    std::uint32_t warp_vertices    = 32;
-    std::uint32_t group_triangles  = 0;
+    ReuseModel model = ReuseModel::fifo;
+    std::uint32_t entries = 24;
+    std::uint32_t warp_vertices = 32;
+    std::uint32_t group_triangles = 0;
     std::uint32_t vertices_per_clk = 2;
 
     static constexpr auto fields() {
@@ -57,7 +57,7 @@ static_assert(sim::fully_described<VertexReuseParams>);
 /// The shader runs that produced the corners of a triangle, and which of them this triangle caused.
 struct ReuseResult {
     std::array<std::uint32_t, 3> sequences{};
-    std::uint8_t                 missed = 0; ///< bit i: corner i is shaded for this triangle
+    std::uint8_t missed = 0; ///< bit i: corner i is shaded for this triangle
 };
 
 /// First in, first out, with optional limits of a warp and of a primitive group.
@@ -65,7 +65,7 @@ class FifoReuse {
   public:
     /// `warp_vertices` and `group_triangles`: 0 = no limit. entries >= 3.
     FifoReuse(std::uint32_t entries, std::uint32_t warp_vertices, std::uint32_t group_triangles);
-    void        begin_draw(std::uint32_t vertex_count);
+    void begin_draw(std::uint32_t vertex_count);
     ReuseResult triangle(const std::array<std::uint32_t, 3>& vertices);
     std::uint32_t runs() const { return next_ - 1; } ///< shader runs so far
 
@@ -76,36 +76,36 @@ class FifoReuse {
     }
     void flush();
 
-    std::uint32_t              entries_, warp_vertices_, group_triangles_;
-    std::uint32_t              next_          = 1;
-    std::uint32_t              flushed_       = 1; ///< runs before this one are forgotten
-    std::uint32_t              warp_          = 0; ///< vertices in the present warp
-    std::uint32_t              group_         = 0; ///< triangles in the present group
-    std::vector<std::uint32_t> run_of_;            ///< by vertex: its latest run, 0 = none
+    std::uint32_t entries_, warp_vertices_, group_triangles_;
+    std::uint32_t next_ = 1;
+    std::uint32_t flushed_ = 1;         ///< runs before this one are forgotten
+    std::uint32_t warp_ = 0;            ///< vertices in the present warp
+    std::uint32_t group_ = 0;           ///< triangles in the present group
+    std::vector<std::uint32_t> run_of_; ///< by vertex: its latest run, 0 = none
 };
 
 /// Mesa's vertex batches. Without an index buffer each vertex is shaded once.
 class MesaReuse {
   public:
-    static constexpr std::uint32_t run_indices   = 1023;
+    static constexpr std::uint32_t run_indices = 1023;
     static constexpr std::uint32_t table_entries = 256;
 
-    void          begin_draw(std::uint32_t vertex_count, bool indexed);
-    ReuseResult   triangle(const std::array<std::uint32_t, 3>& vertices);
+    void begin_draw(std::uint32_t vertex_count, bool indexed);
+    ReuseResult triangle(const std::array<std::uint32_t, 3>& vertices);
     std::uint32_t runs() const { return next_ - 1; }
 
   private:
     struct Entry {
         std::uint32_t vertex = 0;
-        std::uint32_t run    = 0; ///< 0: none
+        std::uint32_t run = 0; ///< 0: none
     };
     Entry& entry_of(std::uint32_t vertex) { return table_[vertex % table_.size()]; }
 
-    std::uint32_t      next_    = 1;
-    std::uint32_t      flushed_ = 1; ///< runs before this one are forgotten
-    std::uint32_t      indices_ = 0; ///< of the present batch
-    bool               indexed_ = true;
-    std::vector<Entry> table_   = std::vector<Entry>(table_entries);
+    std::uint32_t next_ = 1;
+    std::uint32_t flushed_ = 1; ///< runs before this one are forgotten
+    std::uint32_t indices_ = 0; ///< of the present batch
+    bool indexed_ = true;
+    std::vector<Entry> table_ = std::vector<Entry>(table_entries);
 };
 
 /// The configured one of them.

@@ -12,14 +12,14 @@ Cache::Cache(const CacheParams& params, const char* where)
     if (params.ways == 0 || params.bytes < set_bytes || params.bytes % set_bytes != 0)
         throw sim::InputError(
             fmt::format("{}.bytes: expected a multiple of line * ways = {}, got {}", where, set_bytes, params.bytes));
-    sets_                  = params.bytes / set_bytes;
+    sets_ = params.bytes / set_bytes;
     sets_are_power_of_two_ = std::has_single_bit(sets_);
     lines_.resize(params.lines());
 }
 
 CacheAccess Cache::access(std::uint64_t line, bool write) {
     const std::uint32_t first = first_slot(line);
-    std::uint32_t       slot  = first; // the line itself, or else the least recently used; empty ones come first
+    std::uint32_t slot = first; // the line itself, or else the least recently used; empty ones come first
     for (std::uint32_t way = first; way < first + params_.ways; ++way) {
         if (lines_[way].used != 0 && lines_[way].line == line) {
             touch(way, write);
@@ -27,7 +27,7 @@ CacheAccess Cache::access(std::uint64_t line, bool write) {
         }
         if (lines_[way].used < lines_[slot].used) slot = way;
     }
-    Line&       victim = lines_[slot];
+    Line& victim = lines_[slot];
     CacheAccess result{.evicted = victim.used != 0, .dirty = victim.dirty, .slot = slot, .victim = victim.line};
     ++stats_.misses;
     if (result.evicted) ++stats_.evictions;
@@ -47,12 +47,10 @@ bool Cache::invalidate(std::uint64_t line) {
     const std::uint32_t slot = find(line);
     if (slot == no_slot) return false;
     const bool dirty = lines_[slot].dirty;
-    lines_[slot]     = {};
+    lines_[slot] = {};
     return dirty;
 }
 
-void Cache::clear() {
-    lines_.assign(lines_.size(), {});
-}
+void Cache::clear() { lines_.assign(lines_.size(), {}); }
 
 } // namespace pipeline

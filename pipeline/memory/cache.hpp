@@ -1,6 +1,8 @@
-// Which lines a set-associative cache holds: tags, least recently used replacement and dirty bits, without time or data.
+// Which lines a set-associative cache holds: tags, least recently used replacement and dirty bits, without time or
+// data.
 //
-// A line is a number: address / line bytes. Every line lives in a `slot`, by which a unit can file what it knows about it.
+// A line is a number: address / line bytes. Every line lives in a `slot`, by which a unit can file what it knows about
+// it.
 #pragma once
 
 #include "sim/check.hpp"
@@ -15,8 +17,8 @@ namespace pipeline {
 
 struct CacheParams {
     std::uint32_t bytes = 16384;
-    std::uint32_t line  = 32;
-    std::uint32_t ways  = 4;
+    std::uint32_t line = 32;
+    std::uint32_t ways = 4;
 
     std::uint32_t lines() const { return bytes / line; }
 
@@ -46,19 +48,19 @@ static_assert(sim::fully_described<CacheStats>);
 
 /// What one access did.
 struct CacheAccess {
-    bool          hit     = false;
-    bool          evicted = false; ///< `victim` was replaced
-    bool          dirty   = false; ///< ... and has to be written back
-    std::uint32_t slot    = 0;
-    std::uint64_t victim  = 0;
+    bool hit = false;
+    bool evicted = false; ///< `victim` was replaced
+    bool dirty = false;   ///< ... and has to be written back
+    std::uint32_t slot = 0;
+    std::uint64_t victim = 0;
 };
 
 class Cache {
   public:
     static constexpr std::uint32_t no_slot = ~std::uint32_t{0};
 
-    /// Throws sim::InputError naming `where` unless line is a power of two and bytes a multiple of line * ways. The number
-    /// of sets may be any: line modulo sets selects one.
+    /// Throws sim::InputError naming `where` unless line is a power of two and bytes a multiple of line * ways. The
+    /// number of sets may be any: line modulo sets selects one.
     Cache(const CacheParams& params, const char* where);
 
     /// Looks `line` up and brings it in on a miss; a write leaves it dirty.
@@ -95,27 +97,27 @@ class Cache {
         CHECK(lines_[slot].used != 0);
         return lines_[slot].line;
     }
-    bool               dirty(std::uint32_t slot) const { return lines_[slot].dirty; }
+    bool dirty(std::uint32_t slot) const { return lines_[slot].dirty; }
     const CacheParams& params() const { return params_; }
-    const CacheStats&  stats() const { return stats_; }
+    const CacheStats& stats() const { return stats_; }
 
   private:
     struct Line {
-        std::uint64_t line  = 0;
-        std::uint64_t used  = 0; ///< number of the latest access; 0: empty
-        bool          dirty = false;
+        std::uint64_t line = 0;
+        std::uint64_t used = 0; ///< number of the latest access; 0: empty
+        bool dirty = false;
     };
     std::uint32_t first_slot(std::uint64_t line) const {
         const std::uint64_t set = sets_are_power_of_two_ ? line & (sets_ - 1) : line % sets_;
         return static_cast<std::uint32_t>(set) * params_.ways;
     }
 
-    CacheParams       params_;
-    CacheStats        stats_;
-    std::uint32_t     line_shift_;
-    std::uint64_t     sets_;
-    bool              sets_are_power_of_two_;
-    std::uint64_t     accesses_ = 0;
+    CacheParams params_;
+    CacheStats stats_;
+    std::uint32_t line_shift_;
+    std::uint64_t sets_;
+    bool sets_are_power_of_two_;
+    std::uint64_t accesses_ = 0;
     std::vector<Line> lines_;
 };
 

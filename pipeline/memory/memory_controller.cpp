@@ -18,8 +18,11 @@ std::uint32_t answers_in_flight(const MemoryControllerParams& params) {
 } // namespace
 
 MemoryController::MemoryController(sim::Context context, const Params& params, const Share& share)
-    : Component(context), params_(params), share_(share),
-      channel_(params.dram, share.bandwidth, context.clock.period), random_(simulation().random_for(name())),
+    : Component(context),
+      params_(params),
+      share_(share),
+      channel_(params.dram, share.bandwidth, context.clock.period),
+      random_(simulation().random_for(name())),
       ports_{Port{&hub_in, &hub_out, FixedQueue<Answer>(answers_in_flight(params))},
              Port{&rop_in, &rop_out, FixedQueue<Answer>(answers_in_flight(params))}},
       queue_(params.queue) {}
@@ -76,7 +79,7 @@ bool MemoryController::accept() {
     if (queue_.full()) return false;
     for (std::size_t i = 0; i < ports_.size(); ++i) {
         const std::size_t index = (turn_ + i) % ports_.size();
-        Port&             port  = ports_[index];
+        Port& port = ports_[index];
         if (!port.requests->connected() || port.answers.full()) continue;
         const MemoryRequest* request = port.requests->peek();
         if (request == nullptr) continue;
@@ -90,7 +93,7 @@ bool MemoryController::accept() {
 
 sim::Activity MemoryController::wait() {
     sim::Cycle next = ~sim::Cycle{0};
-    bool       blocked = false;
+    bool blocked = false;
     for (Port& port : ports_) {
         if (port.answers.empty()) continue;
         const sim::Cycle ready = port.answers.front().ready;

@@ -14,9 +14,9 @@
 namespace pipeline {
 
 struct MemoryControllerParams {
-    std::uint32_t queue         = 64;
+    std::uint32_t queue = 64;
     std::uint32_t jitter_cycles = 0;
-    DramParams    dram;
+    DramParams dram;
 
     static constexpr auto fields() {
         return std::tuple{
@@ -30,9 +30,9 @@ struct MemoryControllerParams {
 static_assert(sim::fully_described<MemoryControllerParams>);
 
 struct MemoryControllerStats {
-    sim::Counter                                  requests, reads, writes, row_hits, row_misses;
+    sim::Counter requests, reads, writes, row_hits, row_misses;
     std::array<sim::Counter, memory_client_count> bytes{};
-    sim::HighWater                                queued;
+    sim::HighWater queued;
 
     static constexpr auto fields() {
         using S = MemoryControllerStats;
@@ -43,8 +43,9 @@ struct MemoryControllerStats {
             sim::field<&S::row_hits>("Requests to the open row of their bank; row_hits + row_misses = requests")
                 .unit("requests"),
             sim::field<&S::row_misses>("Requests that opened a row").unit("requests"),
-            sim::field<&S::bytes>("Bytes moved, by client: index, vertex, texture, kbuffer_read, tile_read, tile_write, "
-                                  "copy")
+            sim::field<&S::bytes>(
+                "Bytes moved, by client: index, vertex, texture, kbuffer_read, tile_read, tile_write, "
+                "copy")
                 .unit("bytes"),
             sim::field<&S::queued>("Most requests waiting for the data bus").unit("requests")};
     }
@@ -57,10 +58,10 @@ using MemoryBytes = std::array<std::uint64_t, memory_client_count>;
 class MemoryController final : public sim::Component {
   public:
     using Params = MemoryControllerParams;
-    using Stats  = MemoryControllerStats;
+    using Stats = MemoryControllerStats;
 
-    sim::In<MemoryRequest>   hub_in{*this, "hub_in"};
-    sim::In<MemoryRequest>   rop_in{*this, "rop_in"}; ///< may stay unlinked
+    sim::In<MemoryRequest> hub_in{*this, "hub_in"};
+    sim::In<MemoryRequest> rop_in{*this, "rop_in"}; ///< may stay unlinked
     sim::Out<MemoryResponse> hub_out{*this, "hub_out"};
     sim::Out<MemoryResponse> rop_out{*this, "rop_out"};
 
@@ -68,12 +69,12 @@ class MemoryController final : public sim::Component {
     struct Share {
         std::uint32_t partitions = 1;
         std::uint32_t interleave = 256;
-        double        bandwidth  = 12.8; ///< GB/s of this partition
+        double bandwidth = 12.8; ///< GB/s of this partition
     };
 
     MemoryController(sim::Context context, const Params& params, const Share& share);
 
-    const Stats&  stats() const { return stats_; }
+    const Stats& stats() const { return stats_; }
     const Params& params() const { return params_; }
     /// Bytes booked to draw `i`; draws without traffic may be missing at the end.
     const std::vector<MemoryBytes>& draw_bytes() const { return draw_bytes_; }
@@ -82,34 +83,34 @@ class MemoryController final : public sim::Component {
 
   private:
     struct Answer {
-        std::uint32_t tag   = 0;
-        sim::Cycle    ready = 0;
+        std::uint32_t tag = 0;
+        sim::Cycle ready = 0;
     };
     /// One requester: answers leave in the order in which the requests came.
     struct Port {
-        sim::In<MemoryRequest>*   requests;
+        sim::In<MemoryRequest>* requests;
         sim::Out<MemoryResponse>* responses;
-        FixedQueue<Answer>        answers; ///< as large as the queue and the latency can fill
+        FixedQueue<Answer> answers; ///< as large as the queue and the latency can fill
     };
     static constexpr std::size_t hub = 0, rop = 1;
 
     sim::Activity tick() override;
-    bool          answer(Port& port);
-    void          forget_transferred();
-    bool          accept();
-    void          serve(const MemoryRequest& request, Port& port);
-    void          book(const MemoryRequest& request);
+    bool answer(Port& port);
+    void forget_transferred();
+    bool accept();
+    void serve(const MemoryRequest& request, Port& port);
+    void book(const MemoryRequest& request);
     std::uint64_t local_address(std::uint64_t address, const Port& port) const;
     sim::Activity wait();
 
-    Params                   params_;
-    Stats                    stats_;
-    Share                    share_;
-    DramChannel              channel_;
-    sim::Random              random_;
-    std::array<Port, 2>      ports_;
-    std::size_t              turn_ = hub;  ///< port that goes first
-    FixedQueue<sim::Cycle>   queue_;       ///< edges at which the waiting requests have crossed the bus
+    Params params_;
+    Stats stats_;
+    Share share_;
+    DramChannel channel_;
+    sim::Random random_;
+    std::array<Port, 2> ports_;
+    std::size_t turn_ = hub;       ///< port that goes first
+    FixedQueue<sim::Cycle> queue_; ///< edges at which the waiting requests have crossed the bus
     std::vector<MemoryBytes> draw_bytes_;
 };
 

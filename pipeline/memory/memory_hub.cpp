@@ -17,8 +17,12 @@ std::uint32_t next_bit(std::uint64_t bits, std::uint32_t from) {
 } // namespace
 
 MemoryHub::MemoryHub(sim::Context context, const Params& params, std::uint32_t partitions, std::uint32_t interleave)
-    : Component(std::move(context)), params_(params), interleave_(interleave), next_client_(partitions, 0),
-      reads_(params.reads_in_flight), wanted_(partitions, 0) {
+    : Component(std::move(context)),
+      params_(params),
+      interleave_(interleave),
+      next_client_(partitions, 0),
+      reads_(params.reads_in_flight),
+      wanted_(partitions, 0) {
     for (std::uint32_t i = 0; i < partitions; ++i) partitions_.emplace_back(*this);
     free_reads_.reserve(params.reads_in_flight);
     for (std::uint32_t i = params.reads_in_flight; i > 0; --i) free_reads_.push_back(i - 1);
@@ -35,36 +39,36 @@ std::uint32_t MemoryHub::partition_of(std::uint64_t address) const {
 
 // The answers of different partitions to one client take turns: the first of them moves on with every answer.
 bool MemoryHub::pass_responses() {
-    bool                progress = false;
-    const auto          count    = static_cast<std::uint32_t>(partitions_.size());
-    const std::uint32_t first    = next_partition_;
+    bool progress = false;
+    const auto count = static_cast<std::uint32_t>(partitions_.size());
+    const std::uint32_t first = next_partition_;
     for (std::uint32_t i = 0; i < count; ++i) {
-        const std::uint32_t   index    = (first + i) % count;
-        PartitionPort&        port     = partitions_[index];
+        const std::uint32_t index = (first + i) % count;
+        PartitionPort& port = partitions_[index];
         const MemoryResponse* response = port.responses_in.peek();
         if (response == nullptr) continue;
-        const std::uint32_t slot   = response->tag;
-        ClientPort&         client = clients_[reads_[slot].client];
+        const std::uint32_t slot = response->tag;
+        ClientPort& client = clients_[reads_[slot].client];
         if (!client.responses_out.ready()) continue;
         client.responses_out.send({reads_[slot].tag});
         port.responses_in.pop();
         free_reads_.push_back(slot);
         ++stats_.responses;
         next_partition_ = (index + 1) % count;
-        progress        = true;
+        progress = true;
     }
     return progress;
 }
 
 void MemoryHub::grant(std::uint32_t partition, std::uint64_t clients) {
-    const std::uint32_t client  = next_bit(clients, next_client_[partition]);
-    MemoryRequest       request = clients_[client].requests_in.receive();
+    const std::uint32_t client = next_bit(clients, next_client_[partition]);
+    MemoryRequest request = clients_[client].requests_in.receive();
     CHECK_MSG(request.address % interleave_ + request.bytes <= interleave_, "a request crosses an interleave block");
     if (!request.write) {
         const std::uint32_t slot = free_reads_.back();
         free_reads_.pop_back();
         reads_[slot] = {request.tag, client};
-        request.tag  = slot;
+        request.tag = slot;
         stats_.reads_in_flight.note(reads_.size() - free_reads_.size());
     }
     partitions_[partition].requests_out.send(request);
@@ -75,8 +79,8 @@ void MemoryHub::grant(std::uint32_t partition, std::uint64_t clients) {
 
 // One grant per partition: what the clients ask for first, then who is next in turn.
 bool MemoryHub::pass_requests(bool& waiting) {
-    const bool    room  = free_reads_.size() >= partitions_.size(); // each grant of this round may be a read
-    std::uint64_t wants = 0;                                        // a bit per partition
+    const bool room = free_reads_.size() >= partitions_.size(); // each grant of this round may be a read
+    std::uint64_t wants = 0;                                    // a bit per partition
     for (std::uint32_t client = 0; client < clients_.size(); ++client) {
         const MemoryRequest* request = clients_[client].requests_in.peek();
         if (request == nullptr) continue;
@@ -99,7 +103,7 @@ bool MemoryHub::pass_requests(bool& waiting) {
 
 sim::Activity MemoryHub::tick() {
     bool progress = pass_responses();
-    bool waiting  = false;
+    bool waiting = false;
     for (std::uint32_t round = 0; round < params_.requests_per_clk && pass_requests(waiting); ++round) progress = true;
     if (progress) return sim::Activity::busy;
     if (waiting) return sim::Activity::blocked;

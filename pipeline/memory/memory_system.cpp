@@ -10,8 +10,8 @@ namespace pipeline {
 
 namespace {
 
-constexpr sim::Cycle    port_latency = 1;  ///< between a unit and its end of the crossbar, or its partition
-constexpr std::uint32_t port_buffer  = 8;  ///< requests that wait at a port
+constexpr sim::Cycle port_latency = 1;   ///< between a unit and its end of the crossbar, or its partition
+constexpr std::uint32_t port_buffer = 8; ///< requests that wait at a port
 
 sim::ChannelConfig link_of(sim::Cycle latency, std::uint32_t width) {
     return {latency, width, static_cast<std::uint32_t>(width * (latency + 1)) + port_buffer};
@@ -66,9 +66,7 @@ sim::Cycle MemorySystem::unloaded_latency(std::uint32_t bytes) const {
     return unloaded_rop_latency(bytes) + 2 * sim::Cycle{params_.hub.latency};
 }
 
-MemoryHubStats MemorySystem::hub_stats() const {
-    return hub_ == nullptr ? MemoryHubStats{} : hub_->stats();
-}
+MemoryHubStats MemorySystem::hub_stats() const { return hub_ == nullptr ? MemoryHubStats{} : hub_->stats(); }
 
 MemoryControllerStats MemorySystem::partition_stats(std::uint32_t partition) const {
     return controllers_[partition]->stats();
@@ -94,8 +92,8 @@ nlohmann::ordered_json MemorySystem::report() const {
     nlohmann::ordered_json report = nlohmann::ordered_json::object();
     if (hub_ != nullptr) report["memory_hub"] = unit_report(*hub_);
     nlohmann::ordered_json& partition = report["memory_partition"];
-    partition["params"]               = sim::to_json(params_.controller);
-    partition["counters"]             = sim::to_json(controller_stats());
+    partition["params"] = sim::to_json(params_.controller);
+    partition["counters"] = sim::to_json(controller_stats());
     for (const auto& controller : controllers_) add_activity(partition["activity"], *controller);
     return report;
 }

@@ -13,11 +13,11 @@
 namespace pipeline {
 
 struct MemoryParams {
-    std::uint32_t          partitions = 4;
-    double                 bandwidth  = 51.2;
-    std::uint32_t          interleave = 256;
-    double                 clock_mhz  = 0;
-    MemoryHubParams        hub;
+    std::uint32_t partitions = 4;
+    double bandwidth = 51.2;
+    std::uint32_t interleave = 256;
+    double clock_mhz = 0;
+    MemoryHubParams hub;
     MemoryControllerParams controller;
 
     static constexpr auto fields() {
@@ -29,8 +29,11 @@ struct MemoryParams {
             sim::field<&MemoryParams::interleave>("Consecutive bytes in one partition; a power of two")
                 .unit("bytes")
                 .range(32, 1U << 20U),
-            sim::field<&MemoryParams::clock_mhz>("Clock of the partitions; 0: that of the core").unit("MHz").range(0, 1e5),
-            sim::field<&MemoryParams::hub>("Crossbar"), sim::field<&MemoryParams::controller>("Partition")};
+            sim::field<&MemoryParams::clock_mhz>("Clock of the partitions; 0: that of the core")
+                .unit("MHz")
+                .range(0, 1e5),
+            sim::field<&MemoryParams::hub>("Crossbar"),
+            sim::field<&MemoryParams::controller>("Partition")};
     }
 };
 static_assert(sim::fully_described<MemoryParams>);
@@ -47,7 +50,7 @@ class MemorySystem {
 
     std::uint32_t partitions() const { return params_.partitions; }
     /// The partition in which `address` lies.
-    std::uint32_t       partition_of(std::uint64_t address) const;
+    std::uint32_t partition_of(std::uint64_t address) const;
     const MemoryParams& params() const { return params_; }
 
     bool has_hub() const { return hub_ != nullptr; }
@@ -56,7 +59,7 @@ class MemorySystem {
     sim::Cycle unloaded_latency(std::uint32_t bytes) const;
     sim::Cycle unloaded_rop_latency(std::uint32_t bytes) const;
 
-    MemoryHubStats        hub_stats() const; ///< zeros without a crossbar
+    MemoryHubStats hub_stats() const;               ///< zeros without a crossbar
     MemoryControllerStats controller_stats() const; ///< sum over the partitions
     MemoryControllerStats partition_stats(std::uint32_t partition) const;
     /// Bytes booked to a draw, by client, over all partitions.
@@ -67,11 +70,11 @@ class MemorySystem {
   private:
     MemoryHub& hub();
 
-    sim::Simulation&                               simulation_;
-    const sim::Clock&                              core_;
-    const sim::Clock*                              clock_;
-    MemoryParams                                   params_;
-    std::unique_ptr<MemoryHub>                     hub_;
+    sim::Simulation& simulation_;
+    const sim::Clock& core_;
+    const sim::Clock* clock_;
+    MemoryParams params_;
+    std::unique_ptr<MemoryHub> hub_;
     std::vector<std::unique_ptr<MemoryController>> controllers_;
 };
 

@@ -10,8 +10,8 @@ namespace pipeline {
 inline void add_activity(nlohmann::ordered_json& cycles, const sim::Component& component) {
     for (std::size_t i = 0; i < sim::activity_count; ++i) {
         nlohmann::ordered_json& sum = cycles[std::string(sim::activity_names[i])];
-        const sim::Cycle before     = sum.is_number() ? sum.get<sim::Cycle>() : 0;
-        sum                         = before + component.activity_times()[i] / component.clock().period;
+        const sim::Cycle before = sum.is_number() ? sum.get<sim::Cycle>() : 0;
+        sum = before + component.activity_times()[i] / component.clock().period;
     }
 }
 

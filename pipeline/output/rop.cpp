@@ -28,7 +28,7 @@ Rop::Rop(sim::Context context, const RopParams& params, const PassContext& pass,
       colour_tiles_(shape.colour ? params.cache_tiles : 0, pass.layout.tiles()),
       kbuffer_tiles_(surfaces.kbuffer != nullptr ? params.cache_tiles : 0, pass.layout.tiles()),
       ledger_(pass.layout, *surfaces.history), draw_outputs_(shape.draws), queue_(params.queue), requests_(4 * request_room),
-      answers_(4096), invalidations_(4096), jobs_(1024) {
+      tile_reads_(1024), answers_(4096), invalidations_(4096), jobs_(1024) {
     if (plan.site == UpdateSite::blender && pass.program != nullptr)
         blender_ = std::make_unique<ProgrammableBlender>(plan.blender, *pass.program, rops());
     for (std::uint32_t job = static_cast<std::uint32_t>(jobs_.size()); job > 0; --job) free_jobs_.push_back(job - 1);
@@ -117,7 +117,7 @@ bool Rop::take_memory() {
         else {
             const std::uint32_t target = tag & 127U;
             ReadJob&            job    = jobs_[(tag & ~tag_kind) >> 7U];
-            sample(job, target == all_target ? job.read.targets : std::uint64_t{1} << target);
+            sample(job.read, target == all_target ? job.read.targets : std::uint64_t{1} << target);
             if (--job.outstanding != 0) continue;
             answers_.push(job.read);
             free_jobs_.push_back((tag & ~tag_kind) >> 7U);
@@ -126,14 +126,14 @@ bool Rop::take_memory() {
     return progress;
 }
 
-void Rop::sample(ReadJob& job, std::uint64_t targets) {
+void Rop::sample(const KBufferRead& read, std::uint64_t targets) {
     const bool rop_view = plan_->shader.visibility == Visibility::rop_cache;
     for (std::uint32_t pixel = 0; pixel < 4; ++pixel) {
-        const float*       pixel_floats = surfaces_.kbuffer->seen(job.read.block, pixel, rop_view);
-        const PixelVersion version      = surfaces_.kbuffer->seen_version(job.read.block, pixel, rop_view);
+        const float*       pixel_floats = surfaces_.kbuffer->seen(read.block, pixel, rop_view);
+        const PixelVersion version      = surfaces_.kbuffer->seen_version(read.block, pixel, rop_view);
         for (std::uint64_t left = targets; left != 0; left &= left - 1) {
             const auto target = static_cast<std::uint32_t>(std::countr_zero(left));
-            surfaces_.payloads->sample(job.read.slot, pixel, target, pixel_floats + std::size_t{4} * target, version, cycle());
+            surfaces_.payloads->sample(read.slot, pixel, target, pixel_floats + std::size_t{4} * target, version, cycle());
         }
     }
 }
@@ -145,15 +145,13 @@ bool Rop::accept_reads() {
     for (std::uint32_t n = 0; n < pipes && accepted < params_.reads_per_clk; ++n) {
         auto& port = reads_in[(next_pipe_ + n) % pipes];
         if (port.peek() == nullptr) continue;
-        if (free_jobs_.empty() || requests_.size() + 2 * request_room > requests_.capacity() || answers_.full()) break;
+        if (free_jobs_.empty() || requests_.size() + 2 * request_room > requests_.capacity() || tile_reads_.full()) break;
         const KBufferRead   read = port.receive();
         const std::uint32_t tile = SurfaceLayout::tile_of_block(read.block);
         ++stats_.kbuffer_reads;
         ++accepted;
         if (plan_->shader.visibility == Visibility::rop_cache && kbuffer_tiles_.resident(tile)) {
-            ReadJob job{read, 0};
-            sample(job, read.targets);
-            answers_.push(read);
+            tile_reads_.push({read, cycle() + params_.read_latency});
             ++stats_.kbuffer_reads_from_tiles;
             continue;
         }
@@ -176,6 +174,20 @@ bool Rop::accept_reads() {
     }
     if (pipes != 0) next_pipe_ = (next_pipe_ + 1) % pipes;
     return accepted != 0;
+}
+
+// Values leave the tile cache after its latency, as they are then.
+bool Rop::serve_tile_reads() {
+    bool progress = false;
+    while (!tile_reads_.empty() && tile_reads_.front().ready <= cycle() && !answers_.full()) {
+        const KBufferRead read = tile_reads_.front().read;
+        tile_reads_.pop();
+        sample(read, read.targets);
+        answers_.push(read);
+        progress = true;
+    }
+    if (!tile_reads_.empty()) wake_at(std::max(tile_reads_.front().ready, cycle() + 1));
+    return progress;
 }
 
 bool Rop::secure_tile(Use use, std::uint32_t tile, std::uint16_t& entry) {
@@ -495,6 +507,7 @@ sim::Activity Rop::tick() {
     if (!pending_blends_.empty()) apply_pending_blends();
     bool          progress = take_memory();
     sim::Activity waiting  = sim::Activity::starved;
+    progress |= serve_tile_reads();
     progress |= accept_reads();
     progress |= write_back_next();
     if (!writing_back_) {
@@ -507,7 +520,7 @@ sim::Activity Rop::tick() {
     progress |= send_invalidations();
     if (progress) return sim::Activity::busy;
     if (waiting != sim::Activity::starved) return waiting;
-    const bool holds = !requests_.empty() || !answers_.empty() || !invalidations_.empty() || writing_back_ ||
+    const bool holds = !requests_.empty() || !answers_.empty() || !tile_reads_.empty() || !invalidations_.empty() || writing_back_ ||
                        stream_reads_ + stream_writes_ + stream_outstanding_ != 0 || free_jobs_.size() != jobs_.size();
     return holds ? sim::Activity::memory : sim::Activity::starved;
 }

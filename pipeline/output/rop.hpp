@@ -33,6 +33,7 @@ struct RopParams {
     std::uint32_t cache_tiles   = 32;
     std::uint32_t queue         = 32;
     std::uint32_t reads_per_clk = 1;
+    std::uint32_t read_latency  = 280;
     bool          fast_clear    = false;
 
     static constexpr auto fields() {
@@ -43,6 +44,7 @@ struct RopParams {
             sim::field<&P::cache_tiles>("4x4-pixel tiles in each tile cache of a partition").unit("tiles").range(1, 65534),
             sim::field<&P::queue>("Quads whose tiles are looked up ahead of execution").unit("quads").range(1, 4096),
             sim::field<&P::reads_per_clk>("k-buffer reads of texture units accepted per cycle").unit("reads").range(1, 64),
+            sim::field<&P::read_latency>("From a texture unit's k-buffer read to its value, when the tile is in the cache").unit("cycles").range(1, 10000),
             sim::field<&P::fast_clear>("Clears cost no memory traffic")};
     }
 };
@@ -143,6 +145,10 @@ class Rop final : public sim::Component {
         KBufferRead   read;
         std::uint32_t outstanding = 0;
     };
+    struct TileRead { ///< served from the tile cache
+        KBufferRead read;
+        sim::Cycle  ready = 0;
+    };
     struct PendingBlend { ///< a result inside a blender without interlock
         std::uint32_t block = 0, pixel = 0;
         PixelVersion  version;
@@ -152,6 +158,7 @@ class Rop final : public sim::Component {
     sim::Activity tick() override;
     bool          take_memory();
     bool          accept_reads();
+    bool          serve_tile_reads();
     bool          admit();
     bool          secure_tile(Use use, std::uint32_t tile, std::uint16_t& entry);
     bool          execute(sim::Activity& waiting);
@@ -169,7 +176,7 @@ class Rop final : public sim::Component {
                           std::uint32_t draw);
     void          clean(Use use, std::uint16_t entry);
     void          publish(std::uint32_t tile);
-    void          sample(ReadJob& job, std::uint64_t targets);
+    void          sample(const KBufferRead& read, std::uint64_t targets);
     std::uint32_t run_depth_colour(const Queued& queued);
     std::uint32_t run_store(const Queued& queued);
     std::uint32_t run_blend(const Queued& queued);
@@ -189,6 +196,7 @@ class Rop final : public sim::Component {
     std::vector<DrawOutput>              draw_outputs_;
     FixedQueue<Queued>                   queue_;
     FixedQueue<MemoryRequest>            requests_;
+    FixedQueue<TileRead>                 tile_reads_;
     FixedQueue<KBufferRead>              answers_;
     FixedQueue<std::uint32_t>            invalidations_;
     std::vector<ReadJob>                 jobs_;

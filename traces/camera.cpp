@@ -31,8 +31,7 @@ Sphere bounding_sphere(const Scene& scene) {
 }
 
 glm::dmat4 perspective(double fovy, double aspect, double near, double far) {
-    return far > 0.0 ? glm::perspectiveRH_NO(fovy, aspect, near, far)
-                     : glm::infinitePerspectiveRH_NO(fovy, aspect, near);
+    return far > 0.0 ? glm::perspectiveRH_NO(fovy, aspect, near, far) : glm::infinitePerspectiveRH(fovy, aspect, near);
 }
 
 glm::dmat4 look_at(const glm::dvec3& eye, const glm::dvec3& target) {
@@ -78,17 +77,14 @@ pipeline::View fitting_view(const Scene& scene, std::uint32_t width, std::uint32
 
 pipeline::View camera_view(const Camera& camera, std::uint32_t width, std::uint32_t height) {
     const glm::dmat4 view = glm::inverse(glm::dmat4(camera.to_world));
-    if (camera.orthographic) {
-        const double x = static_cast<double>(camera.xmag), y = static_cast<double>(camera.ymag);
-        return view_of(view,
-                       glm::orthoRH_NO(-x, x, -y, y, static_cast<double>(camera.near), static_cast<double>(camera.far)),
-                       width, height);
-    }
     // The viewport's aspect ratio, not the camera's: pixels are square.
-    return view_of(view,
-                   perspective(static_cast<double>(camera.fovy), aspect_of(width, height),
-                               static_cast<double>(camera.near), static_cast<double>(camera.far)),
-                   width, height);
+    const double aspect = aspect_of(width, height);
+    const double near = static_cast<double>(camera.near), far = static_cast<double>(camera.far);
+    if (camera.orthographic) {
+        const double y = static_cast<double>(camera.ymag), x = y * aspect;
+        return view_of(view, glm::orthoRH_NO(-x, x, -y, y, near, far), width, height);
+    }
+    return view_of(view, perspective(static_cast<double>(camera.fovy), aspect, near, far), width, height);
 }
 
 /// Depths of the bounding box along the view direction, as near and far plane that enclose what is in front of the eye.

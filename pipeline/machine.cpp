@@ -140,13 +140,13 @@ bool Machine::uses_colour() const {
     return frame_->needs.colour_surface || (peels() && frame_->program->needs_colour());
 }
 
-std::uint64_t Machine::total_quads() const {
+std::uint64_t Machine::total_quads(const Frame& frame, std::span<const FragmentStream> streams, const KBufferDesign& design) {
+    const bool    peels = frame.program != nullptr && design.plan(*frame.program, frame.view).site == UpdateSite::passes;
     std::uint64_t quads = 0;
     std::size_t   next  = 0;
-    for (const Pass& pass : frame_->passes) {
+    for (const Pass& pass : frame.passes) {
         if (pass.kind != PassKind::draw) continue;
-        const bool layered = pass.kbuffer && peels();
-        quads += streams_[next++].quads.size() * (layered ? frame_->program->k() : 1);
+        quads += streams[next++].quads.size() * (pass.kbuffer && peels ? frame.program->k() : 1);
     }
     return quads;
 }

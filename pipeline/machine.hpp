@@ -39,8 +39,8 @@ class Machine {
     /// Runs the frame once. `reference` is run_reference() of the same frame and streams.
     RunResult run(const ReferenceImage& reference);
 
-    /// Quads all passes together will dispatch, for progress.
-    std::uint64_t total_quads() const;
+    /// Quads that a run dispatches over all its passes, for progress.
+    static std::uint64_t total_quads(const Frame& frame, std::span<const FragmentStream> streams, const KBufferDesign& design);
 
   private:
     struct Units;

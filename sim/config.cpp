@@ -45,6 +45,12 @@ ordered_json json_of(const toml::node& node) {
     return text_of_date(*node.as_date_time());
 }
 
+std::string_view trimmed(std::string_view text) {
+    const std::size_t first = text.find_first_not_of(" \t");
+    if (first == std::string_view::npos) return {};
+    return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
 bool is_at_or_below(std::string_view path, std::string_view section) {
     if (section.empty() || path == section) return true;
     return path.size() > section.size() && path.starts_with(section) && path[section.size()] == '.';
@@ -116,20 +122,22 @@ Config Config::from_toml_text(std::string_view text, std::string name) {
 }
 
 Config Config::from_toml_file(const std::filesystem::path& path) {
+    std::error_code failed;
     std::ifstream file(path, std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(file), {}};
-    if (!file.is_open() || file.bad() || std::filesystem::is_directory(path))
+    if (!file.is_open() || std::filesystem::is_directory(path, failed))
         throw InputError(fmt::format("{}: cannot be read", path.string()));
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    if (file.bad()) throw InputError(fmt::format("{}: cannot be read", path.string()));
     return from_toml_text(text, path.string());
 }
 
 void Config::set(std::string_view assignment) {
     const std::size_t equals = assignment.find('=');
-    const std::string key(assignment.substr(0, equals));
+    const std::string key(trimmed(assignment.substr(0, equals)));
     const auto bad = [&] { return InputError(fmt::format("--set: expected SECTION.KEY=VALUE, got '{}'", assignment)); };
     const bool plain_key = !key.empty() && key.find_first_of("\"'\n#[]{} \t") == std::string::npos;
     if (equals == std::string_view::npos || !plain_key) throw bad();
-    const std::string value(assignment.substr(equals + 1));
+    const std::string value(trimmed(assignment.substr(equals + 1)));
     if (value.find('\n') != std::string::npos) throw bad();
     try {
         insert_toml(key + " = " + value, "--set", &value);

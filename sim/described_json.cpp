@@ -2,6 +2,7 @@
 
 #include "sim/suggest.hpp"
 
+#include <charconv>
 #include <fmt/format.h>
 
 namespace sim::detail {
@@ -9,9 +10,16 @@ namespace sim::detail {
 namespace {
 
 std::string short_text(const Json& json) {
-    std::string text = json.is_object() ? "a table" : json.dump(-1, ' ', false, Json::error_handler_t::replace);
+    if (json.is_object()) return "a table";
+    if (json.is_number_float()) return number_text(json.get<double>());
+    std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
     if (text.size() > 60) text = text.substr(0, 57) + "...";
     return text;
+}
+
+std::string message(const JsonPlace& where, std::string_view what, const Json& got) {
+    const std::string path = where.path.empty() ? "" : where.path + ": ";
+    return fmt::format("{}: {}expected {}, got {}", where.place, path, what, short_text(got));
 }
 
 std::uint64_t number_in(const Json& json, const char* key, const JsonPlace& where) {
@@ -24,8 +32,13 @@ std::uint64_t number_in(const Json& json, const char* key, const JsonPlace& wher
 } // namespace
 
 void expected(const JsonPlace& where, std::string_view what, const Json& got) {
-    const std::string path = where.path.empty() ? "" : where.path + ": ";
-    throw InputError(fmt::format("{}: {}expected {}, got {}", where.place, path, what, short_text(got)));
+    throw InputError(message(where, what, got));
+}
+
+void expected_choice(const JsonPlace& where, const std::vector<std::string>& names, const Json& got) {
+    const std::string word = got.is_string() ? got.get<std::string>() : "";
+    throw InputError(message(where, fmt::format("one of {}", fmt::join(names, " | ")), got) +
+                     did_you_mean(word, names));
 }
 
 void unknown_key(const JsonPlace& where, const std::string& key, const std::vector<std::string>& known) {
@@ -34,6 +47,8 @@ void unknown_key(const JsonPlace& where, const std::string& key, const std::vect
     const std::string path = join_path(where.path, key);
     throw InputError(fmt::format("{}: unknown key '{}'{}", where.place, path, did_you_mean(path, paths)));
 }
+
+std::string with_range(std::string type, const std::string& range) { return range.empty() ? type : type + " " + range; }
 
 // Only bins that hold something are written: {"start": count}.
 Json histogram_to_json(const Histogram& histogram) {
@@ -54,9 +69,9 @@ Histogram histogram_from_json(const Json& json, const JsonPlace& where) {
         if (!list->is_object()) expected({where.place, where.path + ".bins"}, "a table", *list);
         for (const auto& item : list->items()) {
             std::uint64_t start = 0;
-            const bool good = !item.key().empty() && item.key().size() < 21 &&
-                              item.key().find_first_not_of("0123456789") == std::string::npos;
-            if (good) start = std::stoull(item.key());
+            const char* end = item.key().data() + item.key().size();
+            const auto parsed = std::from_chars(item.key().data(), end, start);
+            const bool good = parsed.ec == std::errc() && parsed.ptr == end;
             const std::size_t bin = shape.bin_of(start);
             if (!good || shape.bin_start(bin) != start)
                 expected({where.place, where.path + ".bins"}, "starts of bins as keys", item.key());

@@ -22,7 +22,9 @@ struct JsonPlace {
 };
 
 [[noreturn]] void expected(const JsonPlace& where, std::string_view what, const Json& got);
+[[noreturn]] void expected_choice(const JsonPlace& where, const std::vector<std::string>& names, const Json& got);
 [[noreturn]] void unknown_key(const JsonPlace& where, const std::string& key, const std::vector<std::string>& known);
+std::string with_range(std::string type, const std::string& range);
 Json histogram_to_json(const Histogram& histogram);
 Histogram histogram_from_json(const Json& json, const JsonPlace& where);
 
@@ -46,13 +48,6 @@ Json value_to_json(const T& value) {
         return value.value;
     else
         return value;
-}
-
-template <class T>
-std::string wanted(std::string_view range) {
-    std::string what = "one of " + std::string(range);
-    if constexpr (!NamedEnum<T>) what = type_name<T>() + (range.empty() ? "" : " ") + std::string(range);
-    return what;
 }
 
 template <Integer T>
@@ -108,7 +103,7 @@ void read_value(T& value, const Json& json, const JsonPlace& where, const F& fie
         const auto& names = EnumNames<T>::names;
         const auto found =
             json.is_string() ? std::find(names.begin(), names.end(), json.get_ref<const std::string&>()) : names.end();
-        if (found == names.end()) expected(where, wanted<T>(range_text(field)), json);
+        if (found == names.end()) expected_choice(where, {names.begin(), names.end()}, json);
         value = static_cast<T>(found - names.begin());
     } else {
         bool good = false;
@@ -117,7 +112,7 @@ void read_value(T& value, const Json& json, const JsonPlace& where, const F& fie
         if constexpr (Integer<T>) good = fits<T>(json) && field.contains(json.get<T>());
         if constexpr (std::floating_point<T>)
             good = json.is_number() && std::isfinite(json.get<T>()) && field.contains(json.get<T>());
-        if (!good) expected(where, wanted<T>(range_text(field)), json);
+        if (!good) expected(where, with_range(type_name<T>(), range_text(field)), json);
         value = json.get<T>();
     }
 }

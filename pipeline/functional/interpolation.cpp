@@ -11,76 +11,97 @@ namespace {
 /// Extrapolated weights beyond this are noise.
 constexpr double largest_weight = 1e6;
 
+struct Position {
+    double x, y;
+};
+
+Position before_snapping(const ScreenVertex& vertex) {
+    return {static_cast<double>(vertex.window.x), static_cast<double>(vertex.window.y)};
+}
+
+Position after_snapping(const ScreenVertex& vertex) {
+    return {static_cast<double>(vertex.x) / subpixel_one, static_cast<double>(vertex.y) / subpixel_one};
+}
+
+double signed_area(const Position& a, const Position& b, const Position& c) {
+    return (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
+}
+
 } // namespace
 
-TriangleInterpolator::TriangleInterpolator(const RasterTriangle& raster, const std::array<ScreenVertex, 3>& corners) {
-    const auto area = static_cast<double>(raster.area);
-    const auto w_of = [&](std::size_t i) { return static_cast<double>(std::max(corners[i].clip.w, smallest_w)); };
-    const double nearest_w = std::min({w_of(0), w_of(1), w_of(2)});
-    for (std::size_t i = 0; i < 3; ++i) {
-        const std::size_t edge = raster.reversed && i != 0 ? 3 - i : i;
-        // Integers below 2^53: exact.
-        constant_[i] = static_cast<double>(raster.constant[edge]);
-        step_x_[i] = static_cast<double>(raster.step_x[edge]);
-        step_y_[i] = static_cast<double>(raster.step_y[edge]);
-        depth_[i] = static_cast<double>(corners[i].depth);
-        inverse_w_[i] = nearest_w / w_of(i);
+DepthPlane::DepthPlane(const RasterTriangle& raster, const std::array<ScreenVertex, 3>& corners) {
+    std::array<Position, 3> at{before_snapping(corners[0]), before_snapping(corners[1]), before_snapping(corners[2])};
+    double area = signed_area(at[0], at[1], at[2]);
+    // A sliver that only snapping gave an area, or turned over.
+    if (raster.reversed ? !(area < 0.0) : !(area > 0.0)) {
+        at = {after_snapping(corners[0]), after_snapping(corners[1]), after_snapping(corners[2])};
+        area = signed_area(at[0], at[1], at[2]);
     }
-    inverse_area_ = 1.0 / area;
-    least_depth_ = std::min({corners[0].depth, corners[1].depth, corners[2].depth});
-    greatest_depth_ = std::max({corners[0].depth, corners[1].depth, corners[2].depth});
-    affine_ = inverse_w_[0] == inverse_w_[1] && inverse_w_[1] == inverse_w_[2];
+    x_ = at[0].x;
+    y_ = at[0].y;
+    depth_ = static_cast<double>(corners[0].depth);
+    // Differences to corner 0: a triangle of constant depth has exactly that depth everywhere.
+    const double to1 = static_cast<double>(corners[1].depth) - depth_;
+    const double to2 = static_cast<double>(corners[2].depth) - depth_;
+    if (to1 != 0.0 || to2 != 0.0) {
+        step_x_ = (to1 * (at[2].y - at[0].y) - to2 * (at[1].y - at[0].y)) / area;
+        step_y_ = (to2 * (at[1].x - at[0].x) - to1 * (at[2].x - at[0].x)) / area;
+    }
+    least_ = std::min({corners[0].depth, corners[1].depth, corners[2].depth});
+    greatest_ = std::max({corners[0].depth, corners[1].depth, corners[2].depth});
 }
 
-void TriangleInterpolator::screen_weights(std::int32_t x, std::int32_t y, QuadWeights& weights) const {
-    for (std::size_t i = 0; i < 3; ++i) {
-        const double here = constant_[i] + step_x_[i] * x + step_y_[i] * y;
-        weights.screen[i][0] = here * inverse_area_;
-        weights.screen[i][1] = (here + step_x_[i]) * inverse_area_;
-        weights.screen[i][2] = (here + step_y_[i]) * inverse_area_;
-        weights.screen[i][3] = (here + step_x_[i] + step_y_[i]) * inverse_area_;
-    }
-}
-
-Lanes TriangleInterpolator::depth(const QuadWeights& weights) const {
-    // Differences to corner 0, so that a triangle of constant depth has exactly that depth everywhere.
-    const double to1 = depth_[1] - depth_[0];
-    const double to2 = depth_[2] - depth_[0];
+Lanes DepthPlane::at(std::int32_t x, std::int32_t y) const {
+    const double here = depth_ + (step_x_ * (x - x_) + step_y_ * (y - y_));
+    const std::array<double, 4> depths{here, here + step_x_, here + step_y_, here + (step_x_ + step_y_)};
     Lanes result;
-    for (std::size_t lane = 0; lane < 4; ++lane) {
-        const double depth = depth_[0] + (weights.screen[1][lane] * to1 + weights.screen[2][lane] * to2);
-        result[lane] = std::clamp(static_cast<float>(depth), least_depth_, greatest_depth_);
-    }
+    // Clamped before it is rounded: the plane of a sliver may be out of the range of binary32.
+    for (std::size_t lane = 0; lane < 4; ++lane)
+        result[lane] =
+            static_cast<float>(std::clamp(depths[lane], static_cast<double>(least_), static_cast<double>(greatest_)));
     return result;
 }
 
-void TriangleInterpolator::perspective_weights(unsigned covered, QuadWeights& weights) const {
-    if (affine_) {
-        for (std::size_t corner = 0; corner < 3; ++corner)
-            for (std::size_t lane = 0; lane < 4; ++lane)
-                weights.perspective[corner][lane] = static_cast<float>(weights.screen[corner][lane]);
-        return;
+AttributePlanes::AttributePlanes(const RasterTriangle& raster, const std::array<ScreenVertex, 3>& corners) {
+    const auto w_of = [&](std::size_t i) { return static_cast<double>(std::max(corners[i].clip.w, smallest_w)); };
+    const double nearest_w = std::min({w_of(0), w_of(1), w_of(2)});
+    const double inverse_area = 1.0 / static_cast<double>(raster.area);
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t edge = raster.reversed && i != 0 ? 3 - i : i;
+        const double scale = inverse_area * (nearest_w / w_of(i));
+        constant_[i] = static_cast<double>(raster.constant[edge]);
+        step_x_[i] = static_cast<double>(raster.step_x[edge]);
+        step_y_[i] = static_cast<double>(raster.step_y[edge]);
+        scale_[i] = scale;
     }
+}
+
+CornerWeights AttributePlanes::at(std::int32_t x, std::int32_t y, unsigned covered) const {
+    // Integers below 2^53 until they are scaled: exact, so that covered pixels have no negative weight.
+    std::array<std::array<double, 4>, 3> shares;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const double here = constant_[i] + step_x_[i] * x + step_y_[i] * y;
+        shares[i] = {here * scale_[i], (here + step_x_[i]) * scale_[i], (here + step_y_[i]) * scale_[i],
+                     (here + (step_x_[i] + step_y_[i])) * scale_[i]};
+    }
+    CornerWeights weights;
     unsigned bad = 0;
     for (std::size_t lane = 0; lane < 4; ++lane) {
-        const double w0 = weights.screen[0][lane] * inverse_w_[0];
-        const double w1 = weights.screen[1][lane] * inverse_w_[1];
-        const double w2 = weights.screen[2][lane] * inverse_w_[2];
-        const double sum = w0 + w1 + w2;
-        const double reach = sum * largest_weight;
-        const bool good = std::fabs(w0) < reach && std::fabs(w1) < reach && std::fabs(w2) < reach;
-        const double scale = good ? 1.0 / sum : 0.0;
-        if (!good) bad |= 1U << lane;
-        weights.perspective[0][lane] = static_cast<float>(w0 * scale);
-        weights.perspective[1][lane] = static_cast<float>(w1 * scale);
-        weights.perspective[2][lane] = static_cast<float>(w2 * scale);
+        const double sum = shares[0][lane] + shares[1][lane] + shares[2][lane];
+        const double largest =
+            std::max({std::fabs(shares[0][lane]), std::fabs(shares[1][lane]), std::fabs(shares[2][lane])});
+        const bool good = largest < sum * largest_weight;
+        const double inverse = good ? 1.0 / sum : 0.0;
+        bad |= (good ? 0U : 1U) << lane;
+        for (std::size_t i = 0; i < 3; ++i) weights.of[i][lane] = static_cast<float>(shares[i][lane] * inverse);
     }
     bad &= ~covered;
-    if (bad == 0) return;
+    if (bad == 0) return weights;
     const auto first = static_cast<std::size_t>(std::countr_zero(covered));
     for (std::size_t lane = 0; lane < 4; ++lane)
         if (((bad >> lane) & 1U) != 0)
-            for (Lanes& corner : weights.perspective) corner[lane] = corner[first];
+            for (Lanes& corner : weights.of) corner[lane] = corner[first];
+    return weights;
 }
 
 } // namespace pipeline

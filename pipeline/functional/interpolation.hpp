@@ -1,7 +1,10 @@
-// What a triangle's attributes are at the four pixel centres of a quad.
+// What a triangle's depth and attributes are at the four pixel centres of a quad.
 //
-// Weights are exact edge functions divided by the area in binary64: at covered pixels none is negative, so no attribute
-// and no depth leaves the range of the triangle's corners, however thin the triangle is.
+// Attributes: the corners' weights are exact edge functions divided by the area in binary64. At covered pixels none is
+// negative, so no attribute leaves the range of the corners, however thin the triangle is.
+// Depth: the plane through the corners as they were before they were snapped to the sub-pixel grid (Mesa does the
+// same), so that surfaces in one plane have one depth whatever their triangles; clamped to the range of the corners'
+// depths.
 #pragma once
 
 #include "pipeline/functional/cull_and_clip.hpp"
@@ -15,42 +18,46 @@ namespace pipeline {
 /// One number for each pixel of a quad.
 using Lanes = std::array<float, 4>;
 
-/// Weights of the three corners at each pixel.
-struct QuadWeights {
-    std::array<std::array<double, 4>, 3> screen; ///< linear on the screen: for depth
-    std::array<Lanes, 3> perspective;            ///< perspective-correct: for attributes
-};
-
-class TriangleInterpolator {
+/// Window depth over a triangle.
+class DepthPlane {
   public:
-    TriangleInterpolator(const RasterTriangle& raster, const std::array<ScreenVertex, 3>& corners);
+    DepthPlane(const RasterTriangle& raster, const std::array<ScreenVertex, 3>& corners);
 
-    /// Screen weights at the quad whose top left pixel is (x, y). Sets weights.screen.
-    void screen_weights(std::int32_t x, std::int32_t y, QuadWeights& weights) const;
-
-    /// Window depth in [0,1], within the range of the corners' depths also where a pixel is not covered.
-    Lanes depth(const QuadWeights& weights) const;
-
-    /// Sets weights.perspective from weights.screen. A pixel that is not covered is extrapolated, for derivatives;
-    /// where that crosses the eye plane or comes near it, the pixel takes the weights of the first covered one.
-    void perspective_weights(unsigned covered, QuadWeights& weights) const;
-
-    /// The attribute with these values at the corners of the primitive part.
-    static Lanes interpolate(const QuadWeights& weights, float at0, float at1, float at2) {
-        Lanes result;
-        for (std::size_t lane = 0; lane < 4; ++lane)
-            result[lane] = weights.perspective[0][lane] * at0 + weights.perspective[1][lane] * at1 +
-                           weights.perspective[2][lane] * at2;
-        return result;
-    }
+    /// Depth in [0,1] at the quad whose top left pixel is (x, y), also where pixels are not covered.
+    Lanes at(std::int32_t x, std::int32_t y) const;
 
   private:
-    std::array<double, 3> constant_, step_x_, step_y_; ///< edge functions, for the corners as they were given
-    std::array<double, 3> depth_;
-    std::array<double, 3> inverse_w_; ///< relative to the largest of the three
-    double inverse_area_ = 0;
-    float least_depth_ = 0, greatest_depth_ = 0;
-    bool affine_ = false; ///< all w are equal
+    double x_, y_, depth_; ///< of corner 0, pixels from the centre of pixel (0, 0)
+    double step_x_ = 0, step_y_ = 0;
+    float least_, greatest_;
+};
+
+/// Shares of the three corners in the attributes at each pixel.
+struct CornerWeights {
+    std::array<Lanes, 3> of;
+
+    /// The attribute that has these values at the corners.
+    Lanes interpolate(float at0, float at1, float at2) const {
+        Lanes result;
+        for (std::size_t lane = 0; lane < 4; ++lane)
+            result[lane] = of[0][lane] * at0 + of[1][lane] * at1 + of[2][lane] * at2;
+        return result;
+    }
+};
+
+/// Perspective-correct interpolation over a triangle.
+class AttributePlanes {
+  public:
+    AttributePlanes(const RasterTriangle& raster, const std::array<ScreenVertex, 3>& corners);
+
+    /// Weights at the quad whose top left pixel is (x, y). Pixels that are not covered are extrapolated, for
+    /// derivatives; one beyond the eye plane, or near it, takes the weights of the first covered pixel. `covered` is
+    /// not 0.
+    CornerWeights at(std::int32_t x, std::int32_t y, unsigned covered) const;
+
+  private:
+    std::array<double, 3> constant_, step_x_, step_y_; ///< edge functions, for the corners in their given order
+    std::array<double, 3> scale_;                      ///< 1/area times the corner's 1/w relative to the largest 1/w
 };
 
 } // namespace pipeline

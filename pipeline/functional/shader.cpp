@@ -102,11 +102,11 @@ ShaderTriangle FragmentShader::triangle(const std::array<std::uint32_t, 3>& vert
     return result;
 }
 
-Lanes FragmentShader::light(const ShaderTriangle& triangle, const QuadWeights& weights) const {
+Lanes FragmentShader::light(const ShaderTriangle& triangle, const CornerWeights& weights) const {
     const auto& c = triangle.corners;
-    const auto x = TriangleInterpolator::interpolate(weights, c[0].normal.x, c[1].normal.x, c[2].normal.x);
-    const auto y = TriangleInterpolator::interpolate(weights, c[0].normal.y, c[1].normal.y, c[2].normal.y);
-    const auto z = TriangleInterpolator::interpolate(weights, c[0].normal.z, c[1].normal.z, c[2].normal.z);
+    const auto x = weights.interpolate(c[0].normal.x, c[1].normal.x, c[2].normal.x);
+    const auto y = weights.interpolate(c[0].normal.y, c[1].normal.y, c[2].normal.y);
+    const auto z = weights.interpolate(c[0].normal.z, c[1].normal.z, c[2].normal.z);
     Lanes result;
     for (std::size_t lane = 0; lane < 4; ++lane) {
         const float squared = x[lane] * x[lane] + y[lane] * y[lane] + z[lane] * z[lane];
@@ -116,11 +116,11 @@ Lanes FragmentShader::light(const ShaderTriangle& triangle, const QuadWeights& w
     return result;
 }
 
-void FragmentShader::texture(const ShaderTriangle& triangle, const QuadWeights& weights, unsigned covered,
+void FragmentShader::texture(const ShaderTriangle& triangle, const CornerWeights& weights, unsigned covered,
                              Output& output) const {
     const auto& c = triangle.corners;
-    const auto u = TriangleInterpolator::interpolate(weights, c[0].texcoord.x, c[1].texcoord.x, c[2].texcoord.x);
-    const auto v = TriangleInterpolator::interpolate(weights, c[0].texcoord.y, c[1].texcoord.y, c[2].texcoord.y);
+    const auto u = weights.interpolate(c[0].texcoord.x, c[1].texcoord.x, c[2].texcoord.x);
+    const auto v = weights.interpolate(c[0].texcoord.y, c[1].texcoord.y, c[2].texcoord.y);
     std::array<glm::vec2, 4> coordinates;
     for (std::size_t lane = 0; lane < 4; ++lane) coordinates[lane] = {u[lane], v[lane]};
     const float level_of_detail = sampler_->level_of_detail(coordinates);
@@ -130,7 +130,7 @@ void FragmentShader::texture(const ShaderTriangle& triangle, const QuadWeights& 
         sampler_->line(coordinates[static_cast<std::size_t>(std::countr_zero(covered))], level_of_detail);
 }
 
-FragmentShader::Output FragmentShader::shade(const ShaderTriangle& triangle, const QuadWeights& weights,
+FragmentShader::Output FragmentShader::shade(const ShaderTriangle& triangle, const CornerWeights& weights,
                                              unsigned covered) const {
     Output output;
     output.alive = static_cast<std::uint8_t>(covered);
@@ -138,8 +138,7 @@ FragmentShader::Output FragmentShader::shade(const ShaderTriangle& triangle, con
     const auto& c = triangle.corners;
     if (colours_)
         for (int channel = 0; channel < 4; ++channel) {
-            const auto values = TriangleInterpolator::interpolate(weights, c[0].colour[channel], c[1].colour[channel],
-                                                                  c[2].colour[channel]);
+            const auto values = weights.interpolate(c[0].colour[channel], c[1].colour[channel], c[2].colour[channel]);
             for (std::size_t lane = 0; lane < 4; ++lane) output.colours[lane][channel] *= values[lane];
         }
     if (sampler_) texture(triangle, weights, covered, output);

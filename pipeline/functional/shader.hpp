@@ -65,13 +65,13 @@ class FragmentShader {
         std::uint32_t texture_line = ~0U; ///< of the first covered pixel; ~0 = no texture read
     };
     /// Shades the covered pixels of a quad.
-    Output shade(const ShaderTriangle& triangle, const QuadWeights& weights, unsigned covered) const;
+    Output shade(const ShaderTriangle& triangle, const CornerWeights& weights, unsigned covered) const;
 
   private:
     ShaderCorner corner(std::uint32_t vertex) const;
     float face_light(const std::array<std::uint32_t, 3>& vertices) const;
-    Lanes light(const ShaderTriangle& triangle, const QuadWeights& weights) const;
-    void texture(const ShaderTriangle& triangle, const QuadWeights& weights, unsigned covered, Output& output) const;
+    Lanes light(const ShaderTriangle& triangle, const CornerWeights& weights) const;
+    void texture(const ShaderTriangle& triangle, const CornerWeights& weights, unsigned covered, Output& output) const;
 
     ShaderOptions options_;
     AttributeReader positions_;

@@ -72,17 +72,17 @@ class Shading {
         cull_and_clip(plan_.viewport, instance_->culling, plan_.corners(*instance_, vertices), parts_);
         const PrimitivePart& part = parts_.parts[number - stream_.primitives[primitive].first_triangle];
         const RasterTriangle raster = set_up(part.corners[0], part.corners[1], part.corners[2], plan_.viewport);
-        interpolator_.emplace(raster, part.corners);
-        if (shader_->needed()) triangle_ = shader_->triangle(vertices, parts_.clipped ? &part.weights : nullptr);
+        depth_.emplace(raster, part.corners);
+        if (!shader_->needed()) return;
+        attributes_.emplace(raster, part.corners);
+        triangle_ = shader_->triangle(vertices, parts_.clipped ? &part.weights : nullptr);
     }
 
     void shade(std::size_t i, Quad& quad) {
-        QuadWeights weights;
-        interpolator_->screen_weights(quad.x, quad.y, weights);
-        stream_.depths[i] = interpolator_->depth(weights);
+        stream_.depths[i] = depth_->at(quad.x, quad.y);
         quad.alive = quad.covered;
         if (!shader_->needed()) return;
-        interpolator_->perspective_weights(quad.covered, weights);
+        const CornerWeights weights = attributes_->at(quad.x, quad.y, quad.covered);
         const FragmentShader::Output output = shader_->shade(triangle_, weights, quad.covered);
         quad.alive = output.alive;
         if (!stream_.colours.empty()) stream_.colours[i] = output.colours;
@@ -95,7 +95,8 @@ class Shading {
     const PlannedInstance* instance_ = nullptr;
     std::optional<FragmentShader> shader_;
     std::optional<PrimitiveReader> reader_;
-    std::optional<TriangleInterpolator> interpolator_;
+    std::optional<DepthPlane> depth_;
+    std::optional<AttributePlanes> attributes_;
     PrimitiveParts parts_;
     ShaderTriangle triangle_;
     std::uint32_t current_triangle_ = 0;

@@ -8,9 +8,9 @@ namespace pipeline {
 
 namespace {
 
-/// From window coordinates in pixels to sub-pixel units relative to pixel centres, to nearest even.
-std::int32_t snap(float window) {
-    return static_cast<std::int32_t>(round_even(static_cast<double>((window - 0.5F) * subpixel_one)));
+/// Pixels to sub-pixel units, to nearest even.
+std::int32_t snap(float pixels) {
+    return static_cast<std::int32_t>(round_even(static_cast<double>(pixels * subpixel_one)));
 }
 
 } // namespace
@@ -37,12 +37,12 @@ std::uint32_t Viewport::outcode(const glm::vec4& clip) const {
 
 void Viewport::project(ScreenVertex& vertex) const {
     const float inverse = 1.0F / std::max(vertex.clip.w, smallest_w);
-    const float x = std::fma(vertex.clip.x * inverse, half_width_, half_width_);
-    // Row 0 is the top row: y is negated before the viewport, where negation is exact.
-    const float y = std::fma(-(vertex.clip.y * inverse), half_height_, half_height_);
+    // Row 0 is the top row: y is negated before the viewport, where negation is exact. Pixel centres lie at halves.
+    vertex.window.x = std::fma(vertex.clip.x * inverse, half_width_, half_width_) - 0.5F;
+    vertex.window.y = std::fma(-(vertex.clip.y * inverse), half_height_, half_height_) - 0.5F;
     const float depth = std::fma(vertex.clip.z * inverse, 0.5F, 0.5F);
-    vertex.x = snap(x);
-    vertex.y = snap(y);
+    vertex.x = snap(vertex.window.x);
+    vertex.y = snap(vertex.window.y);
     vertex.depth = std::clamp(depth, 0.0F, 1.0F);
 }
 

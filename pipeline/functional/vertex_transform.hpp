@@ -36,6 +36,7 @@ inline constexpr std::uint32_t must_clip = near | far | guard_left | guard_right
 struct ScreenVertex {
     glm::vec4 clip{};          ///< clip coordinates, y up
     std::int32_t x = 0, y = 0; ///< sub-pixel units from the centre of pixel (0, 0), y down; valid unless must_clip
+    glm::vec2 window{};        ///< the same in pixels, before it was snapped
     float depth = 0;           ///< window depth in [0,1]
     std::uint32_t outside = 0; ///< bits of namespace outside
 };
@@ -71,15 +72,12 @@ class Viewport {
 /// projection * view * model, multiplied in binary64 and rounded once.
 glm::mat4 clip_matrix(const View& view, const glm::mat4& model);
 
-/// matrix * (position, 1): column 1 times y first, then columns 0 and 2 by fused multiply-add, then column 3.
+/// matrix * (position, 1): the sum over the columns from left to right, every product and every sum rounded.
 inline glm::vec4 to_clip(const glm::mat4& matrix, const glm::vec4& position) {
     glm::vec4 result;
-    for (int row = 0; row < 4; ++row) {
-        float sum = matrix[1][row] * position.y;
-        sum = std::fma(matrix[0][row], position.x, sum);
-        sum = std::fma(matrix[2][row], position.z, sum);
-        result[row] = sum + matrix[3][row];
-    }
+    for (int row = 0; row < 4; ++row)
+        result[row] = ((matrix[0][row] * position.x + matrix[1][row] * position.y) + matrix[2][row] * position.z) +
+                      matrix[3][row];
     return result;
 }
 

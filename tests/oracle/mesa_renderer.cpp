@@ -1,0 +1,261 @@
+#include "tests/support/mesa_renderer.hpp"
+
+#if ROPSIM_HAVE_EGL
+
+#define GL_GLEXT_PROTOTYPES
+#include <EGL/egl.h>
+#include <EGL/eglext.h>
+#include <GL/glcorearb.h>
+
+#include <array>
+#include <cstdlib>
+#include <stdexcept>
+
+namespace tests {
+
+namespace {
+
+constexpr const char* vertex_source = R"(#version 450 core
+layout(location = 0) in vec3 position;
+uniform mat4 clip_matrix;
+
+// The sum is written out, and precise, so that no compiler forms other sums or fused operations.
+void main() {
+    precise vec4 clip = ((clip_matrix[0] * position.x + clip_matrix[1] * position.y) + clip_matrix[2] * position.z)
+                        + clip_matrix[3];
+    gl_Position = clip;
+}
+)";
+
+constexpr const char* fragment_source = R"(#version 450 core
+layout(location = 0) out vec4 colour;
+layout(location = 1) out uint id;
+uniform samplerBuffer colours;
+uniform bool counting;
+void main() {
+    colour = counting ? vec4(1.0) : texelFetch(colours, gl_PrimitiveID);
+    id = uint(gl_PrimitiveID) + 1u;
+}
+)";
+
+GLuint compile(GLenum kind, const char* source) {
+    const GLuint shader = glCreateShader(kind);
+    glShaderSource(shader, 1, &source, nullptr);
+    glCompileShader(shader);
+    GLint good = 0;
+    glGetShaderiv(shader, GL_COMPILE_STATUS, &good);
+    if (good == 0) throw std::runtime_error("the shader of the OpenGL reference does not compile");
+    return shader;
+}
+
+GLuint link_program() {
+    const GLuint program = glCreateProgram();
+    glAttachShader(program, compile(GL_VERTEX_SHADER, vertex_source));
+    glAttachShader(program, compile(GL_FRAGMENT_SHADER, fragment_source));
+    glLinkProgram(program);
+    GLint good = 0;
+    glGetProgramiv(program, GL_LINK_STATUS, &good);
+    if (good == 0) throw std::runtime_error("the shaders of the OpenGL reference do not link");
+    return program;
+}
+
+/// A display without any window system, on the software rasterizer.
+EGLDisplay open_display() {
+    setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
+    setenv("GALLIUM_DRIVER", "llvmpipe", 1);
+    const auto get_display =
+        reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(eglGetProcAddress("eglGetPlatformDisplayEXT"));
+    if (get_display == nullptr) return EGL_NO_DISPLAY;
+    const EGLDisplay display = get_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
+    if (display == EGL_NO_DISPLAY || eglInitialize(display, nullptr, nullptr) == EGL_FALSE) return EGL_NO_DISPLAY;
+    return display;
+}
+
+EGLContext open_context(EGLDisplay display) {
+    constexpr std::array<EGLint, 7> attributes{
+        EGL_CONTEXT_MAJOR_VERSION,           4,       EGL_CONTEXT_MINOR_VERSION, 5, EGL_CONTEXT_OPENGL_PROFILE_MASK,
+        EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
+    if (eglBindAPI(EGL_OPENGL_API) == EGL_FALSE) return EGL_NO_CONTEXT;
+    const EGLContext context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes.data());
+    if (context == EGL_NO_CONTEXT) return context;
+    return eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context) == EGL_TRUE ? context : EGL_NO_CONTEXT;
+}
+
+/// RGBA32F, R32UI and D32F targets of one size.
+class Targets {
+  public:
+    Targets(GLsizei width, GLsizei height) {
+        glGenFramebuffers(1, &framebuffer_);
+        glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+        glGenRenderbuffers(3, buffers_.data());
+        attach(0, GL_RGBA32F, GL_COLOR_ATTACHMENT0, width, height);
+        attach(1, GL_R32UI, GL_COLOR_ATTACHMENT1, width, height);
+        attach(2, GL_DEPTH_COMPONENT32F, GL_DEPTH_ATTACHMENT, width, height);
+        constexpr std::array<GLenum, 2> draw_buffers{GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
+        glDrawBuffers(2, draw_buffers.data());
+        if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
+            throw std::runtime_error("the framebuffer of the OpenGL reference is not complete");
+        glViewport(0, 0, width, height);
+        constexpr std::array<float, 4> black{};
+        constexpr std::array<GLuint, 4> none{};
+        constexpr float far = 1.0F;
+        glClearBufferfv(GL_COLOR, 0, black.data());
+        glClearBufferuiv(GL_COLOR, 1, none.data());
+        glClearBufferfv(GL_DEPTH, 0, &far);
+    }
+    ~Targets() {
+        glDeleteFramebuffers(1, &framebuffer_);
+        glDeleteRenderbuffers(3, buffers_.data());
+    }
+    Targets(const Targets&) = delete;
+    Targets& operator=(const Targets&) = delete;
+
+  private:
+    void attach(std::size_t i, GLenum format, GLenum attachment, GLsizei width, GLsizei height) {
+        glBindRenderbuffer(GL_RENDERBUFFER, buffers_[i]);
+        glRenderbufferStorage(GL_RENDERBUFFER, format, width, height);
+        glFramebufferRenderbuffer(GL_FRAMEBUFFER, attachment, GL_RENDERBUFFER, buffers_[i]);
+    }
+
+    GLuint framebuffer_ = 0;
+    std::array<GLuint, 3> buffers_{};
+};
+
+template <class Element>
+void upload(GLenum target, GLuint buffer, const std::vector<Element>& elements) {
+    glBindBuffer(target, buffer);
+    glBufferData(target, static_cast<GLsizeiptr>(elements.size() * sizeof(Element)), elements.data(), GL_STATIC_DRAW);
+}
+
+class LlvmpipeRenderer : public MesaRenderer {
+  public:
+    LlvmpipeRenderer() : program_(link_program()) {
+        glGenVertexArrays(1, &vertex_array_);
+        glGenBuffers(3, buffers_.data());
+        glGenTextures(1, &colours_);
+        glGenQueries(static_cast<GLsizei>(queries_.size()), queries_.data());
+    }
+
+    std::string description() const override {
+        return std::string(reinterpret_cast<const char*>(glGetString(GL_RENDERER))) + ", OpenGL " +
+               reinterpret_cast<const char*>(glGetString(GL_VERSION));
+    }
+
+    MesaPicture render(const TriangleScene& scene, MesaMode mode, const std::vector<glm::vec4>& colours,
+                       bool cull_back) override {
+        const Targets targets(static_cast<GLsizei>(scene.width), static_cast<GLsizei>(scene.height));
+        set_state(mode, cull_back);
+        load(scene, mode, colours);
+        for (std::size_t i = 0; i < queries_.size(); ++i) glBeginQuery(query_targets[i], queries_[i]);
+        glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(scene.indices.size()), GL_UNSIGNED_INT, nullptr);
+        for (const GLenum target : query_targets) glEndQuery(target);
+        MesaPicture picture = read(scene);
+        if (glGetError() != GL_NO_ERROR) throw std::runtime_error("the OpenGL reference reports an error");
+        return picture;
+    }
+
+  private:
+    static constexpr std::array<GLenum, 4> query_targets{GL_SAMPLES_PASSED, GL_FRAGMENT_SHADER_INVOCATIONS,
+                                                         GL_CLIPPING_INPUT_PRIMITIVES, GL_CLIPPING_OUTPUT_PRIMITIVES};
+
+    static void set_state(MesaMode mode, bool cull_back) {
+        const auto set = [](GLenum what, bool on) { on ? glEnable(what) : glDisable(what); };
+        set(GL_DEPTH_TEST, mode == MesaMode::nearest);
+        glDepthFunc(GL_LESS);
+        glDisable(GL_BLEND);
+        if (mode != MesaMode::nearest) glEnablei(GL_BLEND, 0);
+        if (mode == MesaMode::count) {
+            glBlendFunci(0, GL_ONE, GL_ONE);
+        } else {
+            glBlendFuncSeparatei(0, GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+        }
+        set(GL_CULL_FACE, cull_back);
+        glCullFace(GL_BACK);
+        glFrontFace(GL_CW); // OpenGL sees the picture upside down, see load()
+    }
+
+    void load(const TriangleScene& scene, MesaMode mode, const std::vector<glm::vec4>& colours) {
+        // OpenGL's row 0 is the bottom row. With y negated it becomes the top row and the tie rule the top-left rule.
+        glm::mat4 matrix = scene.matrix;
+        for (int column = 0; column < 4; ++column) matrix[column][1] = -matrix[column][1];
+        glUseProgram(program_);
+        glUniformMatrix4fv(glGetUniformLocation(program_, "clip_matrix"), 1, GL_FALSE, &matrix[0][0]);
+        glUniform1i(glGetUniformLocation(program_, "counting"), mode == MesaMode::blend ? 0 : 1);
+        glUniform1i(glGetUniformLocation(program_, "colours"), 0);
+        glBindVertexArray(vertex_array_);
+        upload(GL_ARRAY_BUFFER, buffers_[0], scene.positions);
+        upload(GL_ELEMENT_ARRAY_BUFFER, buffers_[1], scene.indices);
+        glBindBuffer(GL_ARRAY_BUFFER, buffers_[0]);
+        glEnableVertexAttribArray(0);
+        glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, 12, nullptr);
+        upload(GL_TEXTURE_BUFFER, buffers_[2], colours.empty() ? std::vector<glm::vec4>(1) : colours);
+        glActiveTexture(GL_TEXTURE0);
+        glBindTexture(GL_TEXTURE_BUFFER, colours_);
+        glTexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, buffers_[2]);
+    }
+
+    MesaPicture read(const TriangleScene& scene) const {
+        const std::size_t pixels = std::size_t{scene.width} * scene.height;
+        const auto width = static_cast<GLsizei>(scene.width);
+        const auto height = static_cast<GLsizei>(scene.height);
+        MesaPicture picture;
+        picture.colour.resize(pixels);
+        picture.id.resize(pixels);
+        picture.depth.resize(pixels);
+        glReadBuffer(GL_COLOR_ATTACHMENT0);
+        glReadPixels(0, 0, width, height, GL_RGBA, GL_FLOAT, picture.colour.data());
+        glReadBuffer(GL_COLOR_ATTACHMENT1);
+        glReadPixels(0, 0, width, height, GL_RED_INTEGER, GL_UNSIGNED_INT, picture.id.data());
+        glReadPixels(0, 0, width, height, GL_DEPTH_COMPONENT, GL_FLOAT, picture.depth.data());
+        const auto value = [&](std::size_t i) {
+            GLuint64 result = 0;
+            glGetQueryObjectui64v(queries_[i], GL_QUERY_RESULT, &result);
+            return std::uint64_t{result};
+        };
+        picture.samples_passed = value(0);
+        picture.fs_invocations = value(1);
+        picture.clipping_input = value(2);
+        picture.clipping_output = value(3);
+        return picture;
+    }
+
+    GLuint program_;
+    GLuint vertex_array_ = 0, colours_ = 0;
+    std::array<GLuint, 3> buffers_{};
+    std::array<GLuint, 4> queries_{};
+};
+
+} // namespace
+
+std::unique_ptr<MesaRenderer> MesaRenderer::create(std::string& reason) {
+    const EGLDisplay display = open_display();
+    if (display == EGL_NO_DISPLAY) {
+        reason = "EGL finds no surfaceless Mesa display";
+        return nullptr;
+    }
+    if (open_context(display) == EGL_NO_CONTEXT) {
+        reason = "EGL gives no OpenGL 4.5 core context without a surface";
+        return nullptr;
+    }
+    auto renderer = std::make_unique<LlvmpipeRenderer>();
+    if (renderer->description().find("llvmpipe") == std::string::npos) {
+        reason = "OpenGL is not llvmpipe but " + renderer->description();
+        return nullptr;
+    }
+    return renderer;
+}
+
+} // namespace tests
+
+#else
+
+namespace tests {
+
+std::unique_ptr<MesaRenderer> MesaRenderer::create(std::string& reason) {
+    reason = "built without EGL (package libegl-dev)";
+    return nullptr;
+}
+
+} // namespace tests
+
+#endif

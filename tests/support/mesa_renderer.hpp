@@ -1,0 +1,54 @@
+// An independent OpenGL to compare pictures and counters with: Mesa's llvmpipe, headless, through EGL without a
+// surface.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace tests {
+
+/// Triangles under one matrix.
+struct TriangleScene {
+    std::string name;
+    std::vector<glm::vec3> positions;
+    std::vector<std::uint32_t> indices; ///< three per triangle
+    glm::mat4 matrix{1.0F};             ///< model space to clip space, y up
+    std::uint32_t width = 512, height = 512;
+};
+
+/// What is done with the fragments.
+enum class MesaMode {
+    count,   ///< no depth test; colour.r counts the fragments of each pixel, id is the last one's
+    nearest, ///< depth test LESS with writes; id is the visible triangle's
+    blend,   ///< no depth test; source-over blending of the triangles' colours in order
+};
+
+/// Row 0 is the top row.
+struct MesaPicture {
+    std::vector<glm::vec4> colour;
+    std::vector<std::uint32_t> id; ///< 1 + number of the triangle, 0 where there is none
+    std::vector<float> depth;      ///< window depth
+    std::uint64_t samples_passed = 0;
+    std::uint64_t fs_invocations = 0; ///< 16 for each 4x4 block that a triangle touches
+    std::uint64_t clipping_input = 0;
+    std::uint64_t clipping_output = 0;
+};
+
+class MesaRenderer {
+  public:
+    /// Null when there is no such OpenGL here; then `reason` says what is missing.
+    static std::unique_ptr<MesaRenderer> create(std::string& reason);
+    virtual ~MesaRenderer() = default;
+
+    virtual std::string description() const = 0;
+
+    /// `colours`: one per triangle; used in mode blend. With `cull_back`, triangles that wind clockwise (y up) are
+    /// culled.
+    virtual MesaPicture render(const TriangleScene& scene, MesaMode mode, const std::vector<glm::vec4>& colours = {},
+                               bool cull_back = false) = 0;
+};
+
+} // namespace tests

@@ -77,9 +77,9 @@ void GeometryFront::link_vertex_path(const GeometryParams& params) {
 }
 
 void GeometryFront::attach(MemorySystem& memory) {
-    expect_within_interleave("vertex_fetch.cache.line", vertex_fetch_.params().cache.line, memory);
+    expect_within_interleave("geometry.vertex_fetch.cache.line", vertex_fetch_.params().cache.line, memory);
     if (index_fetch_ != nullptr) {
-        expect_within_interleave("index_fetch.line", index_fetch_->params().line, memory);
+        expect_within_interleave("geometry.index_fetch.line", index_fetch_->params().line, memory);
         memory.attach(index_fetch_->requests_out, index_fetch_->responses_in);
     }
     memory.attach(vertex_fetch_.requests_out, vertex_fetch_.responses_in);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <fmt/format.h>
 
 namespace pipeline {
 
@@ -24,7 +25,8 @@ IndexFetch::IndexFetch(sim::Context context, const Params& params, const Geometr
       pass_(&pass),
       here_(std::bit_ceil(params.lines_in_flight)),
       rate_(static_cast<std::uint64_t>(params.bytes_per_clk * parts_of_a_byte + 0.5)) {
-    if (!std::has_single_bit(params.line)) throw sim::InputError("index_fetch.line: expected a power of two");
+    if (!std::has_single_bit(params.line))
+        throw sim::InputError(fmt::format("geometry.index_fetch.line: expected a power of two, got {}", params.line));
 }
 
 IndexFetch::Work IndexFetch::work_of(std::uint32_t range_number) {

@@ -28,7 +28,8 @@ struct IndexFetchParams {
         using P = IndexFetchParams;
         return std::tuple{
             sim::field<&P::line>("Bytes of a memory request; a power of two").unit("bytes").range(16, 4096),
-            sim::field<&P::lines_in_flight>("Lines requested and not used up yet").range(1, 4096),
+            sim::field<&P::lines_in_flight>("Lines requested and not used up yet; a triangle may need two")
+                .range(2, 4096),
             sim::field<&P::bytes_per_clk>("Index bytes that are read out of the lines")
                 .unit("bytes/cycle")
                 .range(0.01, 4096),

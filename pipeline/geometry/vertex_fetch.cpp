@@ -26,7 +26,7 @@ VertexFetch::VertexFetch(sim::Context context, const Params& params, const Geome
       params_(params),
       pass_(&pass),
       needs_(needs),
-      cache_(params.cache, "vertex_fetch.cache"),
+      cache_(params.cache, "geometry.vertex_fetch.cache"),
       fill_of_(cache_.slots(), 0),
       here_(std::bit_ceil(params.lines_in_flight)),
       waiting_(params.vertices_in_flight) {}

@@ -11,27 +11,81 @@ namespace {
 constexpr double fine_per_byte_at_1_gb_per_s = 1e6;
 } // namespace
 
-DramChannel::DramChannel(const DramParams& params, double bandwidth, sim::Time cycle)
+DramChannel::DramChannel(const DramParams& params, double bandwidth, sim::Time cycle, std::uint32_t queue)
     : row_bytes_(params.row_bytes),
-      latency_(params.latency * cycle * fine_per_time),
-      row_miss_(params.row_miss * cycle * fine_per_time),
+      overtakes_(params.overtakes),
+      cycle_(cycle * fine_per_time),
+      latency_(params.latency * cycle_),
+      row_miss_(params.row_miss * cycle_),
       per_byte_(static_cast<Fine>(fine_per_byte_at_1_gb_per_s / bandwidth + 0.5)),
       banks_(params.banks) {
     CHECK(bandwidth > 0 && row_bytes_ > 0 && !banks_.empty());
+    for (Bank& bank : banks_) bank.requests.reserve(queue);
 }
 
-DramChannel::Service DramChannel::serve(std::uint64_t local, std::uint32_t bytes, sim::Time arrival) {
+// The sum of the digits of the row number to the base `banks`.
+std::uint32_t DramChannel::bank_of_row(std::uint64_t row) const {
+    const std::uint64_t banks = banks_.size();
+    if (banks == 1) return 0;
+    std::uint64_t sum = 0;
+    for (; row != 0; row /= banks) sum += row;
+    return static_cast<std::uint32_t>(sum % banks);
+}
+
+void DramChannel::choose(Bank& bank, sim::Time now) {
+    const bool may_overtake = bank.overtakes < overtakes_;
+    for (bank.next = 0; bank.next < bank.requests.size(); ++bank.next) {
+        if (bank.requests[bank.next].row == bank.row) return;
+        if (!may_overtake) break;
+    }
+    bank.next = 0;
+    bank.overtakes = 0;
+    bank.row = bank.requests.front().row;
+    bank.ready = std::max(now * fine_per_time, bank.free) + row_miss_;
+    bank.fresh = true;
+}
+
+void DramChannel::enqueue(std::uint64_t local, std::uint32_t bytes, std::uint32_t id, sim::Time now) {
     const std::uint64_t row = local / row_bytes_;
-    Bank& bank = banks_[row % banks_.size()];
-    Service service;
-    Fine ready = arrival * fine_per_time;
-    service.row_hit = bank.row == row;
-    if (!service.row_hit) ready = std::max(ready, bank.free) + row_miss_;
-    service.transferred = std::max(ready, bus_free_) + bytes * per_byte_;
-    service.done = service.transferred + latency_;
-    bus_free_ = service.transferred;
-    bank = {row, service.transferred};
-    return service;
+    Bank& bank = banks_[bank_of_row(row)];
+    bank.requests.push_back({row, arrivals_++, bytes, id});
+    ++waiting_;
+    if (bank.requests.size() > 1) return; // its next request stays what it is
+    bank.ready = std::max(bank.ready, now * fine_per_time);
+    choose(bank, now);
+}
+
+const DramChannel::Bank* DramChannel::first_ready() const {
+    const Bank* best = nullptr;
+    for (const Bank& bank : banks_) {
+        if (bank.requests.empty()) continue;
+        if (best == nullptr || start_of(bank) < start_of(*best) ||
+            (start_of(bank) == start_of(*best) && bank.requests[bank.next].number < best->requests[best->next].number))
+            best = &bank;
+    }
+    return best;
+}
+
+std::optional<DramChannel::Fine> DramChannel::next_start() const {
+    const Bank* bank = first_ready();
+    if (bank == nullptr) return std::nullopt;
+    return start_of(*bank);
+}
+
+std::optional<DramChannel::Transfer> DramChannel::transfer(sim::Time now) {
+    const Bank* first = first_ready();
+    if (first == nullptr || start_of(*first) >= now * fine_per_time + cycle_) return std::nullopt;
+    Bank& bank = banks_[static_cast<std::size_t>(first - banks_.data())];
+    const Request request = bank.requests[bank.next];
+    bus_free_ = start_of(bank) + request.bytes * per_byte_;
+    const Transfer result{request.id, bus_free_, bus_free_ + latency_, !bank.fresh};
+    bank.fresh = false;
+    bank.free = bus_free_;
+    bank.overtakes = bank.next == 0 ? 0 : bank.overtakes + 1;
+    bank.requests.erase(bank.requests.begin() + static_cast<std::ptrdiff_t>(bank.next));
+    --waiting_;
+    if (!bank.requests.empty()) choose(bank, now);
+    return result;
 }
 
 } // namespace pipeline

@@ -1,14 +1,18 @@
-// One DRAM channel: when each of its requests, served in order of arrival, is done.
+// One DRAM channel: which of the waiting requests it transfers next, and when.
 //
-// Modelled: a data bus of fixed bandwidth; banks with one open row each; the penalty of opening another row, which is
-// hidden behind the transfers of earlier requests to other banks; a fixed access latency.
-// Not modelled: refresh, read/write turnaround, reordering by row (README.md).
+// Modelled: a data bus of fixed bandwidth; banks with one open row each, activated while other banks transfer; the bank
+// that is ready first goes first, and within a bank requests to the open row overtake others a bounded number of times;
+// a fixed access latency behind the bus. Rows are spread over the banks by a hash, so that streams at distances of a
+// power of two do not meet in one bank.
+// Not modelled: refresh, read/write turnaround, limits on activations across banks.
+// Source: Rixner et al., "Memory Access Scheduling", 2000 (first ready, first come first served).
 #pragma once
 
 #include "sim/described.hpp"
 #include "sim/time.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <tuple>
 #include <vector>
 
@@ -19,17 +23,21 @@ struct DramParams {
     std::uint32_t row_miss = 28;
     std::uint32_t row_bytes = 2048;
     std::uint32_t banks = 8;
+    std::uint32_t overtakes = 16;
 
     static constexpr auto fields() {
+        using P = DramParams;
         return std::tuple{
-            sim::field<&DramParams::latency>("Access latency of a read, without the row penalty and the transfer")
+            sim::field<&P::latency>("Access latency, without the row penalty and the transfer")
                 .unit("cycles")
                 .range(1, 100000),
-            sim::field<&DramParams::row_miss>("Time to close a row and open another one")
-                .unit("cycles")
-                .range(0, 100000),
-            sim::field<&DramParams::row_bytes>("Bytes of a row; a power of two").unit("bytes").range(64, 1U << 20U),
-            sim::field<&DramParams::banks>("Banks of a channel, one open row each").unit("banks").range(1, 1024)};
+            sim::field<&P::row_miss>("Time to close a row and open another one").unit("cycles").range(0, 100000),
+            sim::field<&P::row_bytes>("Bytes of a row").unit("bytes").range(64, 1U << 20U),
+            sim::field<&P::banks>("Banks of a channel, one open row each").unit("banks").range(1, 1024),
+            sim::field<&P::overtakes>(
+                "Requests to the open row that may overtake an older one of the bank; 0: in order")
+                .unit("requests")
+                .at_most(65536)};
     }
 };
 static_assert(sim::fully_described<DramParams>);
@@ -40,30 +48,61 @@ class DramChannel {
     using Fine = std::uint64_t;
     static constexpr Fine fine_per_time = 1000;
 
-    /// `bandwidth` in GB/s of this channel, above 0; `cycle` is the period of the clock that DramParams counts in.
-    DramChannel(const DramParams& params, double bandwidth, sim::Time cycle);
+    /// `bandwidth` in GB/s of this channel, above 0; `cycle` is the period of the clock that DramParams counts in. At
+    /// most `queue` requests wait at a time.
+    DramChannel(const DramParams& params, double bandwidth, sim::Time cycle, std::uint32_t queue);
 
-    struct Service {
-        Fine transferred = 0; ///< the data has crossed the bus: the request leaves the controller's queue
-        Fine done = 0;        ///< a read's data is back at the controller
-        bool row_hit = false;
+    /// Takes a request of `bytes` at `local`, an address within this channel. `id` comes back from transfer().
+    void enqueue(std::uint64_t local, std::uint32_t bytes, std::uint32_t id, sim::Time now);
+    std::uint32_t waiting() const { return waiting_; } ///< requests taken and not transferred
+
+    struct Transfer {
+        std::uint32_t id = 0;
+        Fine end = 0;         ///< the data has crossed the bus
+        Fine done = 0;        ///< ... and, of a read, is back at the controller
+        bool row_hit = false; ///< the row was open already
     };
-    /// Serves a request of `bytes` at `local`, an address within this channel; arrivals never go back in time.
-    Service serve(std::uint64_t local, std::uint32_t bytes, sim::Time arrival);
+    /// The next transfer, if it starts before the clock edge after `now`.
+    std::optional<Transfer> transfer(sim::Time now);
+    /// Start of the next transfer as things stand; nothing when nobody waits.
+    std::optional<Fine> next_start() const;
+    Fine bus_free() const { return bus_free_; } ///< end of the last transfer
 
-    /// From arrival to done of the first read of a row, the bus being free.
+    std::uint32_t bank_of(std::uint64_t local) const { return bank_of_row(local / row_bytes_); }
+    /// From enqueue() to done of a lone read of a closed row.
     Fine unloaded_latency(std::uint32_t bytes) const { return row_miss_ + bytes * per_byte_ + latency_; }
 
   private:
-    struct Bank {
-        std::uint64_t row = ~std::uint64_t{0};
-        Fine free = 0; ///< end of the last transfer from the open row
+    struct Request {
+        std::uint64_t row = 0;
+        std::uint64_t number = 0; ///< order of arrival
+        std::uint32_t bytes = 0;
+        std::uint32_t id = 0;
     };
+    struct Bank {
+        std::vector<Request> requests; ///< in order of arrival
+        std::uint64_t row = ~std::uint64_t{0};
+        Fine ready = 0;              ///< the open row can be read from here on
+        Fine free = 0;               ///< end of the last transfer
+        std::size_t next = 0;        ///< of `requests`: the first one to the open row
+        std::uint32_t overtakes = 0; ///< requests that have overtaken the oldest one
+        bool fresh = false;          ///< nobody has used the open row yet
+    };
+    std::uint32_t bank_of_row(std::uint64_t row) const;
+    /// Finds the next request of a bank, opening its row if none waits for the open one. The bank has requests.
+    void choose(Bank& bank, sim::Time now);
+    Fine start_of(const Bank& bank) const { return bank.ready > bus_free_ ? bank.ready : bus_free_; }
+    const Bank* first_ready() const;
+
     std::uint64_t row_bytes_;
+    std::uint32_t overtakes_;
+    Fine cycle_;
     Fine latency_;
     Fine row_miss_;
     Fine per_byte_;
     Fine bus_free_ = 0;
+    std::uint64_t arrivals_ = 0;
+    std::uint32_t waiting_ = 0;
     std::vector<Bank> banks_;
 };
 

@@ -21,19 +21,21 @@ MemoryController::MemoryController(sim::Context context, const Params& params, c
     : Component(context),
       params_(params),
       share_(share),
-      channel_(params.dram, share.bandwidth, context.clock.period),
+      channel_(params.dram, share.bandwidth, context.clock.period, params.queue),
       random_(simulation().random_for(name())),
       ports_{Port{&hub_in, &hub_out, FixedQueue<Answer>(answers_in_flight(params))},
              Port{&rop_in, &rop_out, FixedQueue<Answer>(answers_in_flight(params))}},
-      queue_(params.queue) {}
+      waiting_(params.queue) {
+    for (std::uint32_t id = params.queue; id > 0; --id) free_ids_.push_back(id - 1);
+}
 
 sim::Cycle MemoryController::unloaded_latency(std::uint32_t bytes) const {
     return clock().cycle_at(time_of(channel_.unloaded_latency(bytes)));
 }
 
-std::uint64_t MemoryController::local_address(std::uint64_t address, const Port& port) const {
+std::uint64_t MemoryController::local_address(std::uint64_t address, std::size_t port) const {
     // The tiles of a ROP partition are about every partitions-th one of a surface.
-    if (&port == &ports_[rop]) return address / share_.partitions;
+    if (port == rop) return address / share_.partitions;
     const std::uint64_t block = address / share_.interleave;
     return block / share_.partitions * share_.interleave + address % share_.interleave;
 }
@@ -47,20 +49,6 @@ void MemoryController::book(const MemoryRequest& request) {
     draw_bytes_[request.draw][client] += request.bytes;
 }
 
-void MemoryController::serve(const MemoryRequest& request, Port& port) {
-    CHECK(request.bytes >= 1 && request.bytes <= largest_request);
-    book(request);
-    const auto service = channel_.serve(local_address(request.address, port), request.bytes, now());
-    ++(service.row_hit ? stats_.row_hits : stats_.row_misses);
-    queue_.push(clock().cycle_at(time_of(service.transferred)));
-    stats_.queued.note(queue_.size());
-    if (request.write) return;
-    sim::Cycle ready = clock().cycle_at(time_of(service.done));
-    if (params_.jitter_cycles > 0) ready += random_.below(params_.jitter_cycles + std::uint64_t{1});
-    if (!port.answers.empty()) ready = std::max(ready, port.answers.back().ready);
-    port.answers.push({request.tag, ready});
-}
-
 bool MemoryController::answer(Port& port) {
     bool progress = false;
     while (!port.answers.empty() && port.answers.front().ready <= cycle() && port.responses->ready()) {
@@ -71,24 +59,46 @@ bool MemoryController::answer(Port& port) {
     return progress;
 }
 
-void MemoryController::forget_transferred() {
-    while (!queue_.empty() && queue_.front() <= cycle()) queue_.pop();
-}
-
+// One request a cycle, from the ports in turn.
 bool MemoryController::accept() {
-    if (queue_.full()) return false;
+    if (free_ids_.empty()) return false;
     for (std::size_t i = 0; i < ports_.size(); ++i) {
         const std::size_t index = (turn_ + i) % ports_.size();
         Port& port = ports_[index];
-        if (!port.requests->connected() || port.answers.full()) continue;
+        const bool room = port.answers.size() + channel_.waiting() < port.answers.capacity();
+        if (!port.requests->connected() || !room) continue;
         const MemoryRequest* request = port.requests->peek();
         if (request == nullptr) continue;
-        serve(*request, port);
+        CHECK(request->bytes >= 1 && request->bytes <= largest_request);
+        const std::uint32_t id = free_ids_.back();
+        free_ids_.pop_back();
+        waiting_[id] = {request->tag, static_cast<std::uint8_t>(index), request->write};
+        channel_.enqueue(local_address(request->address, index), request->bytes, id, now());
+        stats_.queued.note(channel_.waiting());
+        book(*request);
         port.requests->pop();
         turn_ = (index + 1) % ports_.size();
         return true;
     }
     return false;
+}
+
+// Commits the transfers that start before the next edge.
+bool MemoryController::transfer() {
+    bool progress = false;
+    while (const auto transfer = channel_.transfer(now())) {
+        const Waiting& request = waiting_[transfer->id];
+        ++(transfer->row_hit ? stats_.row_hits : stats_.row_misses);
+        free_ids_.push_back(transfer->id);
+        progress = true;
+        if (request.write) continue;
+        FixedQueue<Answer>& answers = ports_[request.port].answers;
+        sim::Cycle ready = clock().cycle_at(time_of(transfer->done));
+        if (params_.jitter_cycles > 0) ready += random_.below(params_.jitter_cycles + std::uint64_t{1});
+        if (!answers.empty()) ready = std::max(ready, answers.back().ready);
+        answers.push({request.tag, ready});
+    }
+    return progress;
 }
 
 sim::Activity MemoryController::wait() {
@@ -102,11 +112,11 @@ sim::Activity MemoryController::wait() {
         else
             next = std::min(next, ready);
     }
-    // A full queue moves on with its oldest transfer. Otherwise the last write of all ends the work.
-    if (queue_.full())
-        next = std::min(next, queue_.front());
-    else if (next == ~sim::Cycle{0} && !blocked && !queue_.empty())
-        next = queue_.back();
+    if (const auto start = channel_.next_start())
+        next = std::min(next, clock().cycle_before(*start / DramChannel::fine_per_time));
+    const sim::Cycle transferred = clock().cycle_at(time_of(channel_.bus_free()));
+    // The last write of all ends the work.
+    if (next == ~sim::Cycle{0} && !blocked && transferred > cycle()) next = transferred;
     if (next != ~sim::Cycle{0}) wake_at(next);
     if (blocked) return sim::Activity::blocked;
     return next == ~sim::Cycle{0} ? sim::Activity::starved : sim::Activity::memory;
@@ -115,8 +125,8 @@ sim::Activity MemoryController::wait() {
 sim::Activity MemoryController::tick() {
     bool progress = answer(ports_[hub]);
     progress |= answer(ports_[rop]);
-    forget_transferred();
     progress |= accept();
+    progress |= transfer();
     return progress ? sim::Activity::busy : wait();
 }
 

@@ -1,8 +1,8 @@
 // A memory partition: the controller of one DRAM channel, shared by the crossbar and the ROP partition in front of it.
 //
-// Modelled: fair arbitration of the two ports, one request a cycle; a bounded queue; bandwidth, rows and latency of the
-// channel (dram_channel.hpp); seeded latency jitter; reads are answered in order of arrival, writes are posted.
-// Not modelled: reordering, read/write turnaround, compression.
+// Modelled: fair arbitration of the two ports, one request a cycle; a bounded queue; bandwidth, rows, order and latency
+// of the channel (dram_channel.hpp); seeded latency jitter; reads are answered in the order in which their data cross
+// the bus, which keeps that of requests to one row; writes are posted. Not modelled: data; compression.
 #pragma once
 
 #include "pipeline/fixed_queue.hpp"
@@ -86,21 +86,25 @@ class MemoryController final : public sim::Component {
         std::uint32_t tag = 0;
         sim::Cycle ready = 0;
     };
-    /// One requester: answers leave in the order in which the requests came.
     struct Port {
         sim::In<MemoryRequest>* requests;
         sim::Out<MemoryResponse>* responses;
         FixedQueue<Answer> answers; ///< as large as the queue and the latency can fill
     };
+    /// What the channel's id of a waiting request stands for.
+    struct Waiting {
+        std::uint32_t tag = 0;
+        std::uint8_t port = 0;
+        bool write = false;
+    };
     static constexpr std::size_t hub = 0, rop = 1;
 
     sim::Activity tick() override;
     bool answer(Port& port);
-    void forget_transferred();
     bool accept();
-    void serve(const MemoryRequest& request, Port& port);
+    bool transfer();
     void book(const MemoryRequest& request);
-    std::uint64_t local_address(std::uint64_t address, const Port& port) const;
+    std::uint64_t local_address(std::uint64_t address, std::size_t port) const;
     sim::Activity wait();
 
     Params params_;
@@ -109,8 +113,9 @@ class MemoryController final : public sim::Component {
     DramChannel channel_;
     sim::Random random_;
     std::array<Port, 2> ports_;
-    std::size_t turn_ = hub;       ///< port that goes first
-    FixedQueue<sim::Cycle> queue_; ///< edges at which the waiting requests have crossed the bus
+    std::size_t turn_ = hub; ///< port that goes first
+    std::vector<Waiting> waiting_;
+    std::vector<std::uint32_t> free_ids_; ///< unused entries of waiting_
     std::vector<MemoryBytes> draw_bytes_;
 };
 

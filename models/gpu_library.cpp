@@ -1,0 +1,37 @@
+#include "models/gpu_library.hpp"
+
+#include "ropsim_build.hpp"
+#include "sim/suggest.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <set>
+#include <system_error>
+
+namespace models {
+
+namespace fs = std::filesystem;
+
+std::vector<std::string> gpu_names() {
+    std::set<std::string> names;
+    for (const fs::path& directory : ropsim_build::data_dirs()) {
+        std::error_code missing;
+        for (const fs::directory_entry& entry : fs::directory_iterator(directory / "models/gpus", missing))
+            if (entry.path().extension() == ".toml") names.insert(entry.path().stem().string());
+    }
+    return {names.begin(), names.end()};
+}
+
+sim::Config load_gpu(std::string_view name_or_path) {
+    const bool is_path = name_or_path.find('/') != std::string_view::npos || name_or_path.ends_with(".toml");
+    if (is_path) return sim::Config::from_toml_file(name_or_path);
+    const std::vector<std::string> names = gpu_names();
+    if (std::find(names.begin(), names.end(), name_or_path) == names.end())
+        throw sim::InputError(fmt::format("unknown GPU '{}'{}; expected a file (.toml) or one of: {}", name_or_path,
+                                          sim::did_you_mean(name_or_path, names), fmt::join(names, ", ")));
+    return sim::Config::from_toml_file(*ropsim_build::find_data(fmt::format("models/gpus/{}.toml", name_or_path)));
+}
+
+} // namespace models

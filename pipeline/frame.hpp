@@ -35,6 +35,7 @@ struct Pass {
     std::vector<std::uint32_t> draws;  ///< indices into Frame::draws; draw passes only
     DepthState                 depth;
     bool                       colour  = false; ///< writes the shaded colour to the "colour" surface
+    bool                       both_faces = false; ///< draws triangles that face away, too
     bool                       kbuffer = false; ///< fragments go through the frame's modify program
 };
 

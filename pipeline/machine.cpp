@@ -222,6 +222,7 @@ void Machine::draw(const Pass& pass, const FragmentStream& stream) {
     context.colour_write = pass.colour;
     context.colour_bytes = bytes_of_format(frame_->colour_format);
     context.depth_format = frame_->depth_format;
+    context.read_only_format = frame_->depth_format;
     context.depth_bytes  = depth_bytes(frame_->depth_format);
     context.behind       = nullptr;
     if (!pass.kbuffer) {

@@ -37,7 +37,8 @@ struct PassContext {
     const PeeledLayer*     behind       = nullptr; ///< reject what is not behind this layer
     PassesSite             peel;
     const std::vector<DepthCode>* read_only_depth = nullptr; ///< early depth test against a finished depth surface
-    DepthFormat               depth_format = DepthFormat::d24;
+    DepthFormat               read_only_format = DepthFormat::d24;
+    DepthFormat               depth_format     = DepthFormat::d24; ///< of the surface that the pass tests and writes
     std::vector<ShaderCost>   shader_costs;    ///< by draw
     bool                      textures = false;
 

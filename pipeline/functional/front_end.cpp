@@ -56,7 +56,7 @@ void make_plan(FrontEndPlan& plan, FragmentStream& stream, const std::vector<Dra
         for (std::size_t i = 0; i < draw.instances.size(); ++i) {
             const glm::mat4& model = draw.instances[i];
             plan.instances.push_back(
-                {&geometry, &material, &model, known->second, vertices, culling_of(material.double_sided, model)});
+                {&geometry, &material, &model, known->second, vertices, culling_of(plan.options.both_faces || material.double_sided, model)});
             if (primitives + count > std::numeric_limits<std::uint32_t>::max())
                 throw sim::InputError(
                     fmt::format("draw {} \"{}\": expected at most 2^32 - 1 primitives in a pass", number, draw.name));

@@ -17,6 +17,7 @@ namespace pipeline {
 struct FrontEndOptions {
     bool colours = true;                     ///< fill FragmentStream::colours
     bool textures = true;                    ///< read textures; without, materials have their base colour only
+    bool both_faces = false;                 ///< keep triangles that face away, whatever their material says
     bool alpha_test = true;                  ///< discard fragments of masked materials
     unsigned threads = 0;                    ///< 0 = all cores; the result is the same for any number
     const std::atomic<bool>* stop = nullptr; ///< when it becomes true, sim::Interrupted is thrown

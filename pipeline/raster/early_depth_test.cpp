@@ -13,7 +13,7 @@ std::uint8_t EarlyDepthTest::surviving(const QuadTask& task) const {
         const std::size_t at =
             static_cast<std::size_t>(quad.y + pixel / 2) * pass_->layout.width + quad.x + pixel % 2;
         const float depth = pass_->stream->depths[task.quad][pixel];
-        if (depth_less(depth_code(pass_->depth_format, depth), (*pass_->read_only_depth)[at]))
+        if (depth_less(depth_code(pass_->read_only_format, depth), (*pass_->read_only_depth)[at]))
             mask = static_cast<std::uint8_t>(mask | 1U << pixel);
     }
     return mask;

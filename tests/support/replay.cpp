@@ -1,28 +1,23 @@
 #include "tests/support/replay.hpp"
 
+#include "sim/check.hpp"
+#include "tests/support/paths.hpp"
+
+#include <fmt/format.h>
+
 namespace support {
 
-std::vector<pipeline::FragmentStream> rasterize_frame(const pipeline::Frame& frame, unsigned threads) {
-    pipeline::FrontEndOptions options;
-    options.colours    = frame.needs.colours;
-    options.textures   = frame.needs.textures;
-    options.alpha_test = frame.needs.alpha_test;
-    options.threads    = threads;
-    std::vector<pipeline::FragmentStream> streams;
-    for (const pipeline::Pass& pass : frame.passes)
-        if (pass.kind == pipeline::PassKind::draw)
-            streams.push_back(pipeline::rasterize(*frame.resources, frame.draws, pass.draws, frame.view, options));
-    return streams;
-}
+Replay::Replay(const std::string& scene, const ReplayOptions& options) : Replay(traces::load_scene(scene), options) {}
 
-Replay::Replay(const std::string& scene, const ReplayOptions& options) {
-    const traces::Scene     loaded = traces::load_scene(scene);
+Replay::Replay(const traces::Scene& scene, const ReplayOptions& options) {
     traces::WorkloadOptions knobs;
     for (const std::string& knob : options.knobs) knobs.set(knob);
-    frame   = traces::build_frame(loaded, traces::make_view(loaded, options.camera, options.width, options.height),
-                                  options.workload, knobs);
-    streams = rasterize_frame(frame);
-    reference = pipeline::run_reference(frame, streams);
+    frame = traces::build_frame(scene, traces::make_view(scene, options.camera, options.width, options.height),
+                                options.workload, knobs);
+    pipeline::FrontEndOptions front_end;
+    front_end.threads = options.threads;
+    streams           = pipeline::rasterize_frame(frame, front_end);
+    reference = pipeline::run_reference(frame, streams, 1, options.threads);
 }
 
 pipeline::RunResult Replay::run(const std::string& design, const std::vector<std::string>& settings,
@@ -36,6 +31,55 @@ pipeline::RunResult Replay::run(const std::string& design, const std::vector<std
     config.expect_all_used();
     pipeline::Machine machine(gpu, frame, streams, *model, options);
     return machine.run(reference);
+}
+
+const pipeline::FragmentStream& Replay::kbuffer_stream() const {
+    std::size_t next = 0;
+    for (const pipeline::Pass& pass : frame.passes) {
+        if (pass.kind != pipeline::PassKind::draw) continue;
+        if (pass.kbuffer) return streams[next];
+        ++next;
+    }
+    CHECK_MSG(false, "the frame has no k-buffer pass");
+    return streams.front();
+}
+
+std::vector<std::vector<pipeline::QuadId>> quads_by_pixel(const pipeline::FragmentStream& stream) {
+    std::vector<std::vector<pipeline::QuadId>> lists(std::size_t{stream.width} * stream.height);
+    for (pipeline::QuadId id = 0; id < stream.quads.size(); ++id) {
+        const pipeline::Quad& quad = stream.quads[id];
+        for (std::uint32_t lane = 0; lane < 4; ++lane)
+            if ((quad.alive >> lane & 1U) != 0)
+                lists[std::size_t{quad.y + lane / 2} * stream.width + quad.x + lane % 2].push_back(id);
+    }
+    return lists;
+}
+
+std::vector<std::string> design_ids() {
+    std::vector<std::string> ids;
+    for (const models::DesignInfo& design : models::designs()) ids.emplace_back(design.id);
+    return ids;
+}
+
+const pipeline::PassResult& pass_named(const pipeline::RunResult& run, const std::string& name) {
+    for (const pipeline::PassResult& pass : run.passes)
+        if (pass.name.starts_with(name)) return pass;
+    CHECK_MSG(false, "no pass of this name");
+    return run.passes.front();
+}
+
+std::uint64_t counter(const nlohmann::ordered_json& json, const std::string& path) {
+    return json.at(nlohmann::ordered_json::json_pointer("/" + path)).get<std::uint64_t>();
+}
+
+std::string shared_scene(const std::string& name) {
+    const auto found = ropsim_test::shared_file("scenes/" + name);
+    return found ? found->string() : std::string();
+}
+
+std::string demo_scene() {
+    const auto file = ropsim_test::source_dir() / "build/scenes/menagerie.glb";
+    return std::filesystem::exists(file) ? file.string() : std::string();
 }
 
 } // namespace support

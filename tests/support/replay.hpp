@@ -2,7 +2,7 @@
 #pragma once
 
 #include "models/kbuffers/library.hpp"
-#include "pipeline/functional/front_end.hpp"
+#include "pipeline/functional/frame_streams.hpp"
 #include "pipeline/machine.hpp"
 #include "sim/config.hpp"
 #include "traces/camera.hpp"
@@ -15,26 +15,48 @@
 namespace support {
 
 struct ReplayOptions {
-    std::uint32_t            width = 128, height = 128;
-    std::string              workload = "transparency";
-    std::string              camera   = "auto";
+    std::uint32_t width = 128, height = 128;
+    std::string workload = "transparency";
+    std::string camera = "auto";
     std::vector<std::string> knobs; ///< of the workload: "k=4", "entry=z"
+    unsigned threads = 0;           ///< of the functional front end; 0 = all cores
 };
 
 class Replay {
   public:
     explicit Replay(const std::string& scene, const ReplayOptions& options = {});
+    explicit Replay(const traces::Scene& scene, const ReplayOptions& options = {});
 
     /// `settings` are assignments as on the command line: "existing.visibility=rop_cache", "fragment.pipes=1".
     pipeline::RunResult run(const std::string& design, const std::vector<std::string>& settings = {},
                             pipeline::MachineOptions options = {}) const;
 
-    pipeline::Frame                        frame;
-    std::vector<pipeline::FragmentStream>  streams;
-    pipeline::ReferenceImage               reference;
+    /// The stream of the k-buffer pass.
+    const pipeline::FragmentStream& kbuffer_stream() const;
+
+    pipeline::Frame frame;
+    std::vector<pipeline::FragmentStream> streams;
+    pipeline::ReferenceImage reference;
 };
 
-/// Streams of all draw passes of a frame.
-std::vector<pipeline::FragmentStream> rasterize_frame(const pipeline::Frame& frame, unsigned threads = 0);
+/// Per pixel in row order: the quads with a living fragment there, in raster order.
+std::vector<std::vector<pipeline::QuadId>> quads_by_pixel(const pipeline::FragmentStream& stream);
+
+/// The ids of all designs.
+std::vector<std::string> design_ids();
+
+/// Counters of the pass whose name begins with `name`, as the design executed it.
+const pipeline::PassResult& pass_named(const pipeline::RunResult& run, const std::string& name);
+
+/// A counter by its path, for example counter(run.stages, "rop/counters/fragments").
+std::uint64_t counter(const nlohmann::ordered_json& json, const std::string& path);
+
+/// Where two runs first differ in anything but the cost of the run itself; empty when they are equal.
+std::string difference(const pipeline::RunResult& a, const pipeline::RunResult& b);
+
+/// A file of the further scenes (see support/paths.hpp); empty when it is not there.
+std::string shared_scene(const std::string& name);
+/// The scene of ./demo, once that was made; else empty.
+std::string demo_scene();
 
 } // namespace support

@@ -13,12 +13,17 @@
 namespace traces {
 
 enum class TransparentDraws : std::uint8_t { all, materials };
+enum class Faces : std::uint8_t { both, material };
 
 } // namespace traces
 
 template <>
 struct sim::EnumNames<traces::TransparentDraws> {
     static constexpr std::array<std::string_view, 2> names{"all", "materials"};
+};
+template <>
+struct sim::EnumNames<traces::Faces> {
+    static constexpr std::array<std::string_view, 2> names{"both", "material"};
 };
 
 namespace traces {
@@ -29,6 +34,7 @@ struct TransparencyParams {
     std::uint32_t k = 4;
     models::EntryKind entry = models::EntryKind::rgbz;
     TransparentDraws transparent = TransparentDraws::all;
+    Faces faces = Faces::both;
     float opacity = 0.5F;
     std::array<float, 3> background = {1.0F, 1.0F, 1.0F};
     pipeline::DepthFormat depth_format = pipeline::DepthFormat::d24;
@@ -40,6 +46,8 @@ struct TransparencyParams {
             sim::field<&P::entry>("what a layer keeps: colour and depth, or depth"),
             sim::field<&P::transparent>("which draws are transparent: all, or those whose material is (the others are "
                                         "drawn first, with a depth buffer)"),
+            sim::field<&P::faces>("which faces of transparent draws are layers: both, as one sees through the front ones, or "
+                                  "those that the material shows"),
             sim::field<&P::opacity>("opacity of every layer").range(0.0F, 1.0F),
             sim::field<&P::background>("linear RGB behind everything").range(0.0F, 1.0F),
             sim::field<&P::depth_format>("format of the depth surface, where there is one"));
@@ -85,7 +93,7 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const Tran
     if (with_transparent) {
         graph.add_clear("clear k-buffer", {kbuffer_surface});
         graph.add_draw("geometry", with_opaque ? std::vector<std::string>{depth_surface} : std::vector<std::string>{},
-                       {kbuffer_surface}, std::move(draws.transparent));
+                       {kbuffer_surface}, std::move(draws.transparent), params.faces == Faces::both);
         resolved.emplace_back(kbuffer_surface);
     } else {
         graph.leave_out("pass geometry", "no draw has a transparent material");

@@ -1,0 +1,15 @@
+// The fragment streams of a frame: what each of its draw passes sends into the fragment stage.
+#pragma once
+
+#include "pipeline/frame.hpp"
+#include "pipeline/functional/front_end.hpp"
+
+#include <vector>
+
+namespace pipeline {
+
+/// One stream per draw pass, in pass order. What to shade and which faces to keep follows from the frame; of `options`,
+/// threads, stop and progress count.
+std::vector<FragmentStream> rasterize_frame(const Frame& frame, FrontEndOptions options = {});
+
+} // namespace pipeline

@@ -1,0 +1,191 @@
+#include "reports/comparison.hpp"
+
+#include "models/gpu_library.hpp"
+#include "pipeline/functional/composite.hpp"
+#include "pipeline/functional/frame_streams.hpp"
+#include "pipeline/functional/parallel.hpp"
+#include "pipeline/machine.hpp"
+#include "reports/numbers.hpp"
+#include "traces/camera.hpp"
+#include "traces/scene.hpp"
+#include "traces/workloads.hpp"
+
+#include <chrono>
+#include <fmt/format.h>
+#include <set>
+#include <sys/resource.h>
+#include <thread>
+#include <unistd.h>
+
+namespace reports {
+
+namespace {
+
+class Stopwatch {
+  public:
+    double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count(); }
+
+  private:
+    std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+void enter(const Supervision& supervision, Progress::Phase phase) {
+    if (supervision.stop != nullptr && *supervision.stop) throw sim::Interrupted();
+    if (supervision.progress != nullptr) supervision.progress->phase = phase;
+}
+
+// GPU and designs read one configuration, so that a misspelt key of either is found.
+void read_hardware(const ComparisonRequest& request, ComparisonInput& input) {
+    sim::Config config = models::load_gpu(request.gpu);
+    for (const std::string& setting : request.gpu_settings) config.set(setting);
+    config.read("", input.gpu_params);
+    input.gpu.parameters = config.effective();
+    std::set<std::string> seen;
+    for (const std::string& design : request.designs) {
+        if (!seen.insert(design).second) throw sim::InputError(fmt::format("--designs: '{}' is named twice", design));
+        input.designs.push_back(models::make_design(design, config));
+    }
+    input.gpu.name = request.gpu;
+    input.gpu.origins = config.origins();
+    models::check_design_sections(config);
+    config.expect_all_used();
+}
+
+SceneFacts facts_of(const traces::Scene& scene, const std::string& camera) {
+    return {scene.name,
+            scene.hash,
+            scene.triangles,
+            scene.triangles_drawn,
+            scene.vertices,
+            scene.draws.size(),
+            scene.resources->textures.size(),
+            camera,
+            scene.notes};
+}
+
+void read_scene(const ComparisonRequest& request, ComparisonInput& input) {
+    traces::WorkloadOptions options;
+    for (const std::string& setting : request.workload_settings) options.set(setting);
+    const traces::Scene scene = traces::load_scene(request.scene);
+    const pipeline::View view = traces::make_view(scene, request.camera, request.width, request.height);
+    input.frame = std::make_shared<const pipeline::Frame>(traces::build_frame(scene, view, request.workload, options));
+    input.scene = facts_of(scene, request.camera);
+}
+
+void check_designs(const ComparisonInput& input) {
+    if (!input.frame->program) return;
+    for (const auto& design : input.designs)
+        if (const std::string reason = design->refuses(*input.frame->program); !reason.empty())
+            throw sim::InputError(fmt::format("--designs: '{}' cannot run the program {}: {}", design->id(),
+                                              input.frame->program->id(), reason));
+}
+
+// A frame that cannot fit would be ended by the system without a word.
+void check_memory(const ComparisonInput& input, const ComparisonRequest& request) {
+    const pipeline::Frame& frame = *input.frame;
+    const double pixels = static_cast<double>(frame.view.width) * frame.view.height;
+    const double kbuffer = frame.program ? frame.program->bytes_per_pixel() : 0;
+    constexpr double colour = 16, depth = 12;
+    // One k-buffer, colour and depth surface for the reference and each design; those that run also hold older
+    // versions.
+    const double running = std::min<double>(input.threads, static_cast<double>(input.designs.size()));
+    const double needed =
+        pixels * ((kbuffer + colour + depth) * (1 + static_cast<double>(input.designs.size())) + running * kbuffer);
+    const double here = static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
+    if (needed > here)
+        throw sim::InputError(fmt::format("--size {}x{}: these designs need at least {} of memory, this machine has {}",
+                                          request.width, request.height, bytes_text(needed), bytes_text(here)));
+}
+
+void shade(ComparisonInput& input, const Supervision& supervision) {
+    const pipeline::Frame& frame = *input.frame;
+    pipeline::FrontEndOptions options;
+    options.threads = input.threads;
+    options.stop = supervision.stop;
+    if (supervision.progress != nullptr)
+        options.progress = [progress = supervision.progress](double share) { progress->share = share; };
+    input.streams = pipeline::rasterize_frame(frame, options);
+}
+
+FramePixels pixels_of(const pipeline::Frame& frame, std::vector<float> kbuffer, const std::vector<float>& colour) {
+    FramePixels pixels;
+    pixels.composite = kbuffer.empty() ? colour : pipeline::composite(frame, kbuffer, colour);
+    pixels.kbuffer = std::move(kbuffer);
+    return pixels;
+}
+
+pipeline::RunResult run_design(const ComparisonInput& input, const pipeline::KBufferDesign& design,
+                               const Supervision& supervision) {
+    pipeline::MachineOptions options;
+    options.seed = input.seed;
+    options.stop = supervision.stop;
+    if (supervision.progress != nullptr) options.quads_done = &supervision.progress->quads_done;
+    const Stopwatch watch;
+    pipeline::Machine machine(input.gpu_params, *input.frame, input.streams, design, options);
+    pipeline::RunResult result = machine.run(input.reference);
+    result.host_seconds = watch.seconds();
+    return result;
+}
+
+// Before the first run starts: quads of all runs, so that the time left can be estimated.
+std::uint64_t all_quads(const ComparisonInput& input) {
+    std::uint64_t sum = 0;
+    for (const auto& design : input.designs)
+        sum += pipeline::Machine::total_quads(*input.frame, input.streams, *design);
+    return sum;
+}
+
+std::uint64_t peak_memory() {
+    rusage usage{};
+    ::getrusage(RUSAGE_SELF, &usage);
+    return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024; // Linux counts KiB
+}
+
+} // namespace
+
+unsigned core_count() { return std::max(1U, std::thread::hardware_concurrency()); }
+
+ComparisonInput prepare(const ComparisonRequest& request, const Supervision& supervision) {
+    const Stopwatch watch;
+    ComparisonInput input;
+    input.seed = request.seed;
+    input.threads = request.threads == 0 ? core_count() : request.threads;
+    enter(supervision, Progress::Phase::reading);
+    read_hardware(request, input);
+    read_scene(request, input);
+    check_designs(input);
+    check_memory(input, request);
+    enter(supervision, Progress::Phase::shading);
+    const Stopwatch front_end;
+    shade(input, supervision);
+    enter(supervision, Progress::Phase::reference);
+    input.reference = pipeline::run_reference(*input.frame, input.streams, 1, input.threads);
+    input.front_end_seconds = front_end.seconds();
+    input.seconds = watch.seconds();
+    return input;
+}
+
+Comparison compare(ComparisonInput input, const Supervision& supervision) {
+    const Stopwatch watch;
+    enter(supervision, Progress::Phase::simulating);
+    Comparison comparison;
+    if (supervision.progress != nullptr) supervision.progress->quads_total = all_quads(input);
+    for (const auto& design : input.designs) comparison.design_parameters.push_back(design->parameters());
+    comparison.runs.resize(input.designs.size());
+    comparison.pixels.resize(input.designs.size());
+    pipeline::parallel_for(input.threads, input.designs.size(), [&](std::size_t i) {
+        comparison.runs[i] = run_design(input, *input.designs[i], supervision);
+        comparison.pixels[i] =
+            pixels_of(*input.frame, std::move(comparison.runs[i].kbuffer), comparison.runs[i].colour);
+    });
+    comparison.reference = pixels_of(*input.frame, std::move(input.reference.kbuffer), input.reference.colour);
+    comparison.depth_complexity = std::move(input.reference.depth_complexity);
+    comparison.scene = std::move(input.scene);
+    comparison.gpu = std::move(input.gpu);
+    comparison.frame = std::move(input.frame);
+    comparison.seed = input.seed;
+    comparison.host = {input.seconds + watch.seconds(), input.front_end_seconds, peak_memory(), input.threads};
+    return comparison;
+}
+
+} // namespace reports

@@ -1,0 +1,70 @@
+// Several k-buffer designs on one frame: what they have in common is computed once, then each design replays it.
+#pragma once
+
+#include "models/kbuffers/library.hpp"
+#include "pipeline/gpu_params.hpp"
+#include "pipeline/reference.hpp"
+#include "reports/comparison_result.hpp"
+
+#include <atomic>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace reports {
+
+/// What a user asks for, in the words of the command line.
+struct ComparisonRequest {
+    std::string scene;           ///< as traces::load_scene takes it
+    std::string camera = "auto"; ///< as traces::make_view takes it
+    std::uint32_t width = 512, height = 512;
+    std::string workload = "transparency";
+    std::vector<std::string> workload_settings; ///< "key=value"
+    std::string gpu = "neutral";
+    std::vector<std::string> gpu_settings; ///< "section.key=value"; also parameters of designs
+    std::vector<std::string> designs;      ///< at least one, no duplicates
+    std::uint64_t seed = 1;
+    unsigned threads = 0; ///< 0 = all cores
+};
+
+/// How far a comparison is; written by it, read by whoever shows it.
+struct Progress {
+    enum class Phase : std::uint8_t { reading, shading, reference, simulating, writing };
+    std::atomic<Phase> phase = Phase::reading;
+    std::atomic<double> share = 0;             ///< of the shading, 0 to 1
+    std::atomic<std::uint64_t> quads_done = 0; ///< of all designs together
+    std::atomic<std::uint64_t> quads_total = 0;
+};
+
+/// Whoever started a comparison can watch and end it; both may be null.
+struct Supervision {
+    const std::atomic<bool>* stop = nullptr; ///< becomes true: sim::Interrupted is thrown soon
+    Progress* progress = nullptr;
+};
+
+/// All that the runs share. Immutable while they run.
+struct ComparisonInput {
+    SceneFacts scene;
+    GpuFacts gpu;
+    pipeline::GpuParams gpu_params;
+    std::shared_ptr<const pipeline::Frame> frame;
+    std::vector<pipeline::FragmentStream> streams; ///< one per draw pass
+    pipeline::ReferenceImage reference;
+    std::vector<std::unique_ptr<pipeline::KBufferDesign>> designs;
+    std::uint64_t seed = 1;
+    unsigned threads = 1; ///< at least 1
+    double seconds = 0;   ///< host time that making all this took
+    double front_end_seconds = 0;
+};
+
+/// Checks the request, reads the scene, shades the frame and computes the reference. Throws sim::InputError with one
+/// line for anything the user got wrong; what is cheap to check comes first.
+ComparisonInput prepare(const ComparisonRequest& request, const Supervision& supervision = {});
+
+/// Runs every design, several at once. Everything but `host` is the same for any number of threads.
+Comparison compare(ComparisonInput input, const Supervision& supervision = {});
+
+/// The threads that 0 stands for.
+unsigned core_count();
+
+} // namespace reports

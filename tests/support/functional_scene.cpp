@@ -1,0 +1,140 @@
+#include "tests/support/functional_scene.hpp"
+
+#include <cstring>
+#include <numeric>
+
+namespace tests {
+
+namespace {
+
+template <class Element>
+void add_attribute(pipeline::Resources& resources, pipeline::Geometry& geometry, pipeline::Semantic semantic,
+                   const std::vector<Element>& elements) {
+    if (elements.empty()) return;
+    pipeline::VertexAttribute attribute;
+    attribute.semantic = semantic;
+    attribute.components = static_cast<std::uint8_t>(Element::length());
+    attribute.buffer = static_cast<std::uint32_t>(resources.buffers.size());
+    attribute.stride = sizeof(Element);
+    geometry.attributes.push_back(attribute);
+    resources.buffers.push_back(buffer_of(elements));
+}
+
+template <class Element>
+bool same_bytes(const std::vector<Element>& a, const std::vector<Element>& b) {
+    return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(Element)) == 0);
+}
+
+} // namespace
+
+FunctionalScene::FunctionalScene(std::uint32_t width, std::uint32_t height) {
+    view.width = width;
+    view.height = height;
+    view.projection[0][0] = 2.0F / static_cast<float>(width);
+    view.projection[1][1] = -2.0F / static_cast<float>(height);
+    view.projection[2][2] = 2.0F;
+    view.projection[3] = glm::vec4(-1.0F, 1.0F, -1.0F, 1.0F);
+    pipeline::Material plain;
+    plain.double_sided = true;
+    plain.unlit = true;
+    add_material(plain);
+}
+
+std::uint32_t FunctionalScene::add(const MeshData& mesh, std::uint32_t material, const glm::mat4& model) {
+    pipeline::Geometry geometry;
+    geometry.vertex_count = static_cast<std::uint32_t>(mesh.positions.size());
+    add_attribute(resources, geometry, pipeline::Semantic::position, mesh.positions);
+    add_attribute(resources, geometry, pipeline::Semantic::normal, mesh.normals);
+    add_attribute(resources, geometry, pipeline::Semantic::colour, mesh.colours);
+    add_attribute(resources, geometry, pipeline::Semantic::texcoord0, mesh.texcoords);
+    geometry.index_count = geometry.vertex_count;
+    if (!mesh.indices.empty()) {
+        geometry.index_type = pipeline::IndexType::u32;
+        geometry.index_buffer = static_cast<std::uint32_t>(resources.buffers.size());
+        geometry.index_count = static_cast<std::uint32_t>(mesh.indices.size());
+        resources.buffers.push_back(buffer_of(mesh.indices));
+    }
+    resources.geometries.push_back(geometry);
+    draws.push_back({"", static_cast<std::uint32_t>(resources.geometries.size() - 1), material, {model}});
+    return static_cast<std::uint32_t>(draws.size() - 1);
+}
+
+std::uint32_t FunctionalScene::add_material(const pipeline::Material& material) {
+    resources.materials.push_back(material);
+    return static_cast<std::uint32_t>(resources.materials.size() - 1);
+}
+
+std::uint32_t FunctionalScene::add_texture(const pipeline::Texture& texture) {
+    resources.textures.push_back(texture);
+    return static_cast<std::uint32_t>(resources.textures.size() - 1);
+}
+
+std::vector<std::uint32_t> FunctionalScene::all_draws() const {
+    std::vector<std::uint32_t> all(draws.size());
+    std::iota(all.begin(), all.end(), 0U);
+    return all;
+}
+
+pipeline::FragmentStream FunctionalScene::rasterize(const pipeline::FrontEndOptions& options) {
+    resources.place();
+    resources.validate("scene");
+    return pipeline::rasterize(resources, draws, all_draws(), view, options);
+}
+
+pipeline::Buffer buffer_of(const void* data, std::size_t bytes) {
+    pipeline::Buffer buffer;
+    buffer.bytes.resize(bytes);
+    if (bytes != 0) std::memcpy(buffer.bytes.data(), data, bytes);
+    return buffer;
+}
+
+pipeline::Texture texture_of(std::uint32_t width, std::uint32_t height, const std::vector<std::uint32_t>& rgba_codes) {
+    pipeline::Texture texture;
+    texture.levels.resize(1);
+    texture.levels[0].width = width;
+    texture.levels[0].height = height;
+    for (const std::uint32_t code : rgba_codes)
+        for (const unsigned shift : {24U, 16U, 8U, 0U})
+            texture.levels[0].rgba.push_back(static_cast<std::uint8_t>(code >> shift));
+    return texture;
+}
+
+pipeline::Texture texture_of_one_colour(std::uint32_t width, std::uint32_t height, std::uint32_t rgba_code) {
+    return texture_of(width, height, std::vector<std::uint32_t>(std::size_t{width} * height, rgba_code));
+}
+
+std::vector<std::uint32_t> coverage_counts(const pipeline::FragmentStream& stream) {
+    std::vector<std::uint32_t> counts(std::size_t{stream.width} * stream.height);
+    for (const pipeline::Quad& quad : stream.quads)
+        for (std::size_t lane = 0; lane < 4; ++lane)
+            if (((quad.covered >> lane) & 1U) != 0) ++counts.at((quad.y + lane / 2) * stream.width + quad.x + lane % 2);
+    return counts;
+}
+
+MeshData rectangle(float x0, float y0, float x1, float y1, float depth) {
+    MeshData mesh;
+    mesh.positions = {{x0, y0, depth}, {x1, y0, depth}, {x0, y1, depth}, {x1, y1, depth}};
+    mesh.texcoords = {{0.0F, 0.0F}, {1.0F, 0.0F}, {0.0F, 1.0F}, {1.0F, 1.0F}};
+    mesh.indices = {0, 1, 2, 2, 1, 3};
+    return mesh;
+}
+
+bool equal(const pipeline::FragmentStream& a, const pipeline::FragmentStream& b) {
+    // Primitive has padding bytes, which have no value.
+    const auto same_primitives = [&] {
+        if (a.primitives.size() != b.primitives.size()) return false;
+        for (std::size_t i = 0; i < a.primitives.size(); ++i) {
+            const pipeline::Primitive &p = a.primitives[i], &q = b.primitives[i];
+            if (p.first_triangle != q.first_triangle || p.triangles != q.triangles || p.fate != q.fate ||
+                p.clipped != q.clipped)
+                return false;
+        }
+        return true;
+    };
+    return a.width == b.width && a.height == b.height && same_bytes(a.draws, b.draws) && same_primitives() &&
+           same_bytes(a.triangles, b.triangles) && same_bytes(a.quads, b.quads) && same_bytes(a.depths, b.depths) &&
+           same_bytes(a.colours, b.colours) && same_bytes(a.texture_lines, b.texture_lines) &&
+           a.fragments == b.fragments && a.fragments_discarded == b.fragments_discarded;
+}
+
+} // namespace tests

@@ -16,12 +16,14 @@ std::uint32_t WakeQueue::add_component() {
         wheel_ = std::move(wider);
         ++words_;
     }
+    far_asked_.push_back(none);
     return component_count_++;
 }
 
 void WakeQueue::wake(std::uint32_t component, Cycle at) {
     if (wake_near(component, at)) return;
     CHECK(at != none && (current_ == none || at > current_));
+    if (std::exchange(far_asked_[component], at) == at) return;
     far_.push_back({at, component});
     std::push_heap(far_.begin(), far_.end(), std::greater<>());
 }

@@ -83,7 +83,8 @@ class WakeQueue {
     std::size_t words_ = 0;                            ///< of 64 bits, per slot
     std::vector<std::uint64_t> wheel_;                 ///< words_ for each of `reach` slots
     std::array<std::uint64_t, reach / 64> occupied_{}; ///< slots with a wake-up
-    std::vector<FarWake> far_;                         ///< a heap, the earliest first
+    std::vector<Cycle> far_asked_; ///< by component, the edge last filed in `far_`: waiting components ask for it again
+    std::vector<FarWake> far_;     ///< a heap, the earliest first
 };
 
 } // namespace sim

@@ -212,6 +212,39 @@ TEST(Run, WakingAtThePresentEdgeIsRefused) {
     EXPECT_THROW(rig.simulation.run(), sim::InternalError);
 }
 
+// Asks for ticks far away, again and again.
+class Planner final : public sim::Component {
+  public:
+    std::vector<Cycle> ticks;
+    Planner(sim::Context context, std::vector<Cycle> plan) : Component(std::move(context)), plan_(std::move(plan)) {}
+
+  private:
+    Activity tick() override {
+        ticks.push_back(cycle());
+        for (const Cycle at : plan_)
+            if (at > cycle()) wake_at(at);
+        return Activity::idle;
+    }
+    std::vector<Cycle> plan_;
+};
+
+TEST(Run, EveryFarWakeUpIsHonoured) {
+    const std::vector<Cycle> plan{0, 1, 1022, 1023, 1024, 1025, 2047, 2048, 5000, 6000, 1'000'000};
+    for (const sim::Mode mode : {sim::Mode::normal, sim::Mode::shuffled}) {
+        Rig rig(mode);
+        Planner planner(rig.context("planner"), plan);
+        rig.simulation.run();
+        EXPECT_EQ(planner.ticks, plan);
+    }
+}
+
+TEST(Run, WakingBeyondTheEndOfTimeIsRefused) {
+    Rig rig;
+    Worker worker(rig.context("worker"), 1);
+    EXPECT_THROW(rig.simulation.wake_at_cycle(worker, ~Cycle{0} - 1), sim::InternalError);
+    EXPECT_THROW(rig.simulation.wake_at_cycle(worker, ~Cycle{0} / 500), sim::InternalError);
+}
+
 TEST(Run, NamesAreUniqueAndClocksBelongToTheSimulation) {
     Rig rig, other;
     Worker worker(rig.context("worker"), 0);

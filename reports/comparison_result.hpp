@@ -34,8 +34,9 @@ struct FramePixels {
 
 struct GpuFacts {
     std::string name;
-    nlohmann::ordered_json parameters;          ///< every effective value, nested by unit
-    std::map<std::string, sim::Origin> origins; ///< of those values whose origin is stated, by path
+    nlohmann::ordered_json parameters; ///< every effective value, nested by unit
+    std::map<std::string, sim::Origin>
+        origins; ///< of those values whose origin is stated, by path; also of the designs' parameters
 };
 
 /// Cost of the comparison on the machine that ran it: the only numbers that differ between two equal runs.
@@ -51,10 +52,11 @@ struct Comparison {
     GpuFacts gpu;
     std::shared_ptr<const pipeline::Frame> frame;
     std::uint64_t seed = 1;
-    FramePixels reference;                       ///< in submission order, without time
-    std::vector<std::uint32_t> depth_complexity; ///< fragments drawn onto each pixel in one geometry pass
-    std::vector<pipeline::RunResult> runs;       ///< in the order in which the designs were asked for
-    std::vector<FramePixels> pixels;             ///< of each run
+    FramePixels reference;                                 ///< in submission order, without time
+    std::vector<std::uint32_t> depth_complexity;           ///< fragments drawn onto each pixel in one geometry pass
+    std::vector<pipeline::RunResult> runs;                 ///< in the order in which the designs were asked for
+    std::vector<nlohmann::ordered_json> design_parameters; ///< of each run
+    std::vector<FramePixels> pixels;                       ///< of each run
     HostCost host;
 
     std::uint32_t width() const { return frame->view.width; }

@@ -140,8 +140,9 @@ struct Needs {
     std::vector<std::pair<std::string, std::string>> left_out;
 };
 
-ordered_json design_json(const pipeline::RunResult& run, const Needs& common) {
+ordered_json design_json(const pipeline::RunResult& run, const ordered_json& parameters, const Needs& common) {
     ordered_json json = {{"id", run.design},
+                         {"parameters", object_or_empty(parameters)},
                          {"cycles", run.cycles},
                          {"core_mhz", run.core_mhz},
                          {"milliseconds", milliseconds(run)},
@@ -187,7 +188,8 @@ ordered_json result_json(const Comparison& comparison) {
     const Needs common{common_to_all(comparison.runs, &pipeline::RunResult::built),
                        common_to_all(comparison.runs, &pipeline::RunResult::left_out)};
     json["needs"] = needs_json(common.built, common.left_out);
-    for (const pipeline::RunResult& run : comparison.runs) json["designs"].push_back(design_json(run, common));
+    for (std::size_t i = 0; i < comparison.runs.size(); ++i)
+        json["designs"].push_back(design_json(comparison.runs[i], comparison.design_parameters.at(i), common));
     return json;
 }
 

@@ -44,15 +44,21 @@ void Timeline::write(const std::filesystem::path& path) const {
     auto out = std::back_inserter(text);
     fmt::format_to(out, R"({{"name":"process_name","ph":"M","pid":1,"args":{{"name":"GPU, simulated time"}}}})");
     for (std::size_t track = 0; track < track_names_.size(); ++track)
-        fmt::format_to(out, ",\n" R"({{"name":"thread_name","ph":"M","pid":1,"tid":{},"args":{{"name":{}}}}})", track + 1,
-                       nlohmann::json(track_names_[track]).dump());
+        fmt::format_to(out,
+                       ",\n"
+                       R"({{"name":"thread_name","ph":"M","pid":1,"tid":{},"args":{{"name":{}}}}})",
+                       track + 1, nlohmann::json(track_names_[track]).dump());
     for (const Slice& slice : slices_)
-        fmt::format_to(out, ",\n" R"({{"name":"{}","ph":"X","pid":1,"tid":{},"ts":{},"dur":{}}})",
+        fmt::format_to(out,
+                       ",\n"
+                       R"({{"name":"{}","ph":"X","pid":1,"tid":{},"ts":{},"dur":{}}})",
                        sim::to_string(slice.activity), slice.track + 1, microseconds(slice.begin),
                        microseconds(slice.end - slice.begin));
     for (std::size_t link = 0; link < sent_.size(); ++link)
         for (const auto& [start, count] : sent_[link])
-            fmt::format_to(out, ",\n" R"({{"name":{},"ph":"C","pid":1,"ts":{},"args":{{"messages per microsecond":{}}}}})",
+            fmt::format_to(out,
+                           ",\n"
+                           R"({{"name":{},"ph":"C","pid":1,"ts":{},"args":{{"messages per microsecond":{}}}}})",
                            nlohmann::json(link_names_[link]).dump(), microseconds(start), count);
     text += "\n]}\n";
     write_file(path, text);

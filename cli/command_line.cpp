@@ -1,0 +1,192 @@
+#include "cli/command_line.hpp"
+
+#include "reports/result.hpp"
+#include "sim/suggest.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace cli {
+
+namespace {
+
+constexpr const char* general_help = R"(Examples:
+  ropsim compare scene.glb --out report        four designs; then open report/report.html
+  ropsim compare gen:stack --k 8 --entry z     a scene made by rule
+  ropsim run scene.glb --design blender        every counter of one design
+  ropsim describe designs                      what can be chosen, and what it means)";
+
+constexpr const char* compare_help = R"(Examples:
+  ropsim compare scene.glb
+  ropsim compare scene.glb --designs existing,scoreboard --out report
+  ropsim compare scene.glb --designs all --gpu g71 --k 8 --size 1024x768 --no-images --out report
+  ropsim compare scene.glb --set scoreboard.granularity=tile8 --set rop.queue=32 --json > result.json)";
+
+constexpr const char* run_help = R"(Examples:
+  ropsim run scene.glb --design existing
+  ropsim run scene.glb --design scoreboard --set scoreboard.side_buffer=128
+  ropsim run "gen:stack?layers=64" --design blender --size 64x64 --json)";
+
+constexpr const char* describe_help = R"(Examples:
+  ropsim describe                      an overview
+  ropsim describe params               every number of a GPU, with unit, range and meaning
+  ropsim describe stats                every counter, with unit and meaning
+  ropsim describe scoreboard           one design (GPU, workload, generator, program, parameter, stage)
+  ropsim describe --names designs      names only, one a line)";
+
+void add_frame_options(CLI::App& command, FrameOptions& options) {
+    command
+        .add_option("scene", options.scene,
+                    "glTF file (.glb, .gltf), FILE#N for its scene number N, or gen:NAME?key=value&key=value")
+        ->required()
+        ->type_name("SCENE");
+    command.add_option("--gpu", options.gpu, "Name of a GPU or a .toml file")->type_name("GPU")->capture_default_str();
+    command.add_option("--workload", options.workload, "Rendering method")->type_name("NAME")->capture_default_str();
+    command.add_option("--k", options.k, "Entries per pixel of the k-buffer (default 4)")->type_name("K");
+    command.add_option("--entry", options.entry, "What an entry holds: rgbz or z (default rgbz)")->type_name("KIND");
+    command.add_option("--size", options.size, "Pixels of the frame")->type_name("WxH")->capture_default_str();
+    command
+        .add_option(
+            "--camera", options.camera,
+            "auto, the number of a camera of the scene, or ex,ey,ez,tx,ty,tz,fovy (eye, target, vertical degrees)")
+        ->type_name("CAMERA")
+        ->capture_default_str();
+    command.add_option("--seed", options.seed, "Seed of everything random in the hardware")
+        ->type_name("N")
+        ->capture_default_str();
+    command.add_option("--threads", options.threads, "Threads (default: all cores); results do not depend on it")
+        ->type_name("N");
+    command
+        .add_option("--set", options.settings,
+                    "Overrides a number of the GPU, of a design or of the workload (workload.KEY); may be repeated")
+        ->type_name("PATH=VALUE")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+void add_output_options(CLI::App& command, OutputOptions& options) {
+    command.add_option("--out", options.directory, "Folder for result.json, tables, report.html and pictures")
+        ->type_name("DIR");
+    command.add_flag("--json", options.json, "Print result.json on standard output, and nothing else");
+    command.add_flag("!--no-images", options.images, "Write no pictures (OpenImageIO is not loaded)");
+}
+
+struct Parser {
+    Parser() {
+        app.description("ropsim: a cycle-approximate simulator of a GPU's graphics pipeline and of k-buffer hardware.");
+        app.name("ropsim");
+        app.footer(general_help);
+        app.set_help_flag("-h,--help", "Print help and end");
+        app.add_flag("--version", version, "Print version and build and end");
+        app.require_subcommand(0, 1);
+        app.get_formatter()->column_width(34);
+
+        CLI::App* command = app.add_subcommand("compare", "Run several k-buffer designs on one frame");
+        add_frame_options(*command, compare.frame);
+        command->add_option("--designs", compare.designs, "Designs to run, separated by commas, or all")
+            ->delimiter(',')
+            ->expected(1)
+            ->type_name("NAMES")
+            ->capture_default_str();
+        add_output_options(*command, compare.output);
+        command->footer(compare_help);
+
+        command = app.add_subcommand("run", "Run one design and print every counter");
+        add_frame_options(*command, run.frame);
+        command->add_option("--design", run.design, "Design to run")->type_name("NAME")->capture_default_str();
+        add_output_options(*command, run.output);
+        command->footer(run_help);
+
+        command = app.add_subcommand("describe", "Say what can be chosen and what the numbers mean");
+        command
+            ->add_option("topic", describe.topic,
+                         "gpus, designs, programs, workloads, generators, params, stats, or a name")
+            ->type_name("TOPIC");
+        command->add_flag("--json", describe.json, "Print one JSON document");
+        command->add_flag("--names", describe.names, "Print names only, one a line");
+        command->footer(describe_help);
+        for (CLI::App* each : app.get_subcommands({})) each->allow_extras();
+        app.allow_extras();
+    }
+
+    CLI::App app;
+    CompareCommand compare;
+    RunCommand run;
+    DescribeCommand describe;
+    bool version = false;
+};
+
+std::vector<std::string> option_names(const CLI::App& app) {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : app.get_options())
+        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    return names;
+}
+
+std::vector<std::string> subcommand_names(const CLI::App& app) {
+    std::vector<std::string> names;
+    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+        names.push_back(command->get_name());
+    return names;
+}
+
+std::string place_of(const CLI::App& command) {
+    return command.get_parent() == nullptr ? "" : command.get_name() + ": ";
+}
+
+// What nothing took: a mistyped option, or one argument too many.
+void refuse_extras(const CLI::App& command) {
+    const std::vector<std::string> extras = command.remaining();
+    if (extras.empty()) return;
+    const auto is_option = [](const std::string& word) { return word.size() > 1 && word.front() == '-'; };
+    const auto option = std::find_if(extras.begin(), extras.end(), is_option);
+    if (option != extras.end()) {
+        const std::string name = option->substr(0, option->find('='));
+        throw UsageError(fmt::format("{}unknown option {}{}", place_of(command), name,
+                                     sim::did_you_mean(name, option_names(command))));
+    }
+    if (command.get_parent() == nullptr)
+        throw UsageError(fmt::format("unknown subcommand '{}'{}", extras.front(),
+                                     sim::did_you_mean(extras.front(), subcommand_names(command))));
+    throw UsageError(fmt::format("{}unexpected argument '{}'", place_of(command), extras.front()));
+}
+
+std::string one_line(std::string text) {
+    std::replace(text.begin(), text.end(), '\n', ' ');
+    return text;
+}
+
+// A required argument is missed before an unknown option is found; the unknown option is the mistake to report.
+void refuse_extras_of(const CLI::App& app) {
+    refuse_extras(app);
+    for (const CLI::App* command : app.get_subcommands()) refuse_extras(*command);
+}
+
+} // namespace
+
+Command parse_command_line(const std::vector<std::string>& arguments) {
+    Parser parser;
+    CLI::App& app = parser.app;
+    try {
+        app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
+    } catch (const CLI::CallForHelp&) {
+        const auto chosen = app.get_subcommands();
+        return ShowText{chosen.empty() ? app.help() : chosen.front()->help()};
+    } catch (const CLI::ParseError& error) {
+        refuse_extras_of(app);
+        const auto chosen = app.get_subcommands();
+        throw UsageError(
+            one_line(fmt::format("{}{}", chosen.empty() ? "" : chosen.front()->get_name() + ": ", error.what())));
+    }
+    refuse_extras_of(app);
+    if (parser.version)
+        return ShowText{fmt::format("ropsim {} ({})\n", reports::version_text(), reports::build_text())};
+    if (app.got_subcommand("compare")) return parser.compare;
+    if (app.got_subcommand("run")) return parser.run;
+    if (app.got_subcommand("describe")) return parser.describe;
+    throw UsageError(
+        fmt::format("expected a subcommand: {}; see ropsim --help", fmt::join(subcommand_names(app), ", ")));
+}
+
+} // namespace cli

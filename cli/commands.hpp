@@ -1,0 +1,12 @@
+// The subcommands. They throw sim::InputError, sim::Interrupted, or what else goes wrong.
+#pragma once
+
+#include "cli/options.hpp"
+
+namespace cli {
+
+void compare(const CompareCommand& command);
+void run(const RunCommand& command);
+void describe(const DescribeCommand& command);
+
+} // namespace cli

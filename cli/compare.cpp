@@ -1,0 +1,48 @@
+// ropsim compare, and what ropsim run shares with it.
+#include "cli/simulate.hpp"
+
+#include "cli/commands.hpp"
+#include "cli/console.hpp"
+#include "cli/interruption.hpp"
+#include "cli/progress_line.hpp"
+#include "reports/report_files.hpp"
+#include "reports/result.hpp"
+#include "reports/terminal_table.hpp"
+
+namespace cli {
+
+namespace {
+
+reports::Comparison compute(const reports::ComparisonRequest& request) {
+    ProgressLine line;
+    const reports::Supervision supervision{&stop_requested(), line.progress()};
+    return reports::compare(reports::prepare(request, supervision), supervision);
+}
+
+std::string write(const reports::Comparison& comparison, const OutputOptions& output) {
+    const FilesInProgress keep_alive;
+    return reports::write_report(comparison, output.directory, {output.images, &stop_requested()});
+}
+
+} // namespace
+
+void simulate(const reports::ComparisonRequest& request, const OutputOptions& output, const Presentation& present) {
+    if (!output.directory.empty()) reports::check_report_folder(output.directory, {output.images, nullptr});
+    const reports::Comparison comparison = compute(request);
+    std::string written;
+    if (!output.directory.empty()) written = write(comparison, output) + "\n";
+    if (output.json)
+        print(reports::result_text(reports::result_json(comparison)));
+    else
+        print(present(comparison, terminal_style()) + written);
+}
+
+void compare(const CompareCommand& command) {
+    const auto present = [](const reports::Comparison& comparison, reports::TerminalStyle style) {
+        return reports::heading(comparison, style) + "\n" + reports::designs_text(comparison, style) + "\n" +
+               reports::left_out_text(comparison, style);
+    };
+    simulate(request_of(command.frame, command.designs), command.output, present);
+}
+
+} // namespace cli

@@ -1,0 +1,166 @@
+#include "reports/catalogue.hpp"
+
+#include "models/gpu_library.hpp"
+#include "models/kbuffers/library.hpp"
+#include "models/programs/library.hpp"
+#include "pipeline/gpu_params.hpp"
+#include "reports/counter_reference.hpp"
+#include "traces/generators.hpp"
+#include "ropsim_build.hpp"
+#include "traces/workloads.hpp"
+
+#include <fmt/format.h>
+#include <fstream>
+
+namespace reports {
+
+using nlohmann::ordered_json;
+
+namespace {
+
+// What distinguishes a GPU is in its numbers: those of its file that are not the defaults.
+std::vector<sim::FieldInfo> gpu_numbers(const std::string& name) {
+    sim::Config config = models::load_gpu(name);
+    pipeline::GpuParams params;
+    config.read("", params);
+    const auto origins = config.origins();
+    std::vector<sim::FieldInfo> fields = sim::describe<pipeline::GpuParams>();
+    const auto values = config.effective();
+    for (sim::FieldInfo& field : fields) {
+        std::string pointer = "/" + field.path;
+        for (char& c : pointer)
+            if (c == '.') c = '/';
+        const ordered_json& value = values.at(ordered_json::json_pointer(pointer));
+        field.default_value = value.is_string() ? value.get<std::string>() : value.dump();
+        if (const auto origin = origins.find(field.path); origin != origins.end())
+            field.text += fmt::format(" ({}: {})", origin->second.origin, origin->second.source);
+    }
+    return fields;
+}
+
+// The file's first line is a comment that says which GPU it is.
+std::string gpu_summary(const std::string& name) {
+    const auto path = ropsim_build::find_data(fmt::format("models/gpus/{}.toml", name));
+    std::string line;
+    if (path) std::getline(std::ifstream(*path) >> std::ws, line);
+    return line.substr(std::min(line.find_first_not_of("# "), line.size()));
+}
+
+std::vector<CatalogueEntry> gpus() {
+    std::vector<CatalogueEntry> entries;
+    for (const std::string& name : models::gpu_names())
+        entries.push_back({"gpus", name, gpu_summary(name), gpu_numbers(name)});
+    return entries;
+}
+
+std::vector<CatalogueEntry> designs() {
+    std::vector<CatalogueEntry> entries;
+    for (const models::DesignInfo& design : models::designs())
+        entries.push_back({"designs", std::string(design.id), std::string(design.summary), design.parameters()});
+    return entries;
+}
+
+std::vector<CatalogueEntry> programs() {
+    std::vector<CatalogueEntry> entries;
+    for (const models::Program& program : models::programs())
+        entries.push_back({"programs",
+                           program.id,
+                           fmt::format("{} (entries: {})", program.summary, fmt::join(program.entries, ", ")),
+                           {}});
+    return entries;
+}
+
+std::vector<CatalogueEntry> workloads() {
+    std::vector<CatalogueEntry> entries;
+    for (const traces::Workload& workload : traces::workloads())
+        entries.push_back({"workloads", workload.id, workload.summary, workload.parameters});
+    return entries;
+}
+
+std::vector<CatalogueEntry> generators() {
+    std::vector<CatalogueEntry> entries;
+    for (const traces::Generator& generator : traces::generators())
+        entries.push_back({"generators", "gen:" + generator.id, generator.summary, generator.parameters});
+    return entries;
+}
+
+CatalogueEntry field_entry(std::string topic, std::string name, const sim::FieldInfo& field) {
+    CatalogueEntry entry{std::move(topic), std::move(name), detail_text(field), {}};
+    return entry;
+}
+
+std::vector<CatalogueEntry> parameters() {
+    std::vector<CatalogueEntry> entries;
+    for (const sim::FieldInfo& field : sim::describe<pipeline::GpuParams>())
+        entries.push_back(field_entry("params", field.path, field));
+    for (const models::DesignInfo& design : models::designs())
+        for (const sim::FieldInfo& field : design.parameters())
+            entries.push_back(field_entry("params", field.path, field));
+    for (const traces::Workload& workload : traces::workloads())
+        for (const sim::FieldInfo& field : workload.parameters)
+            entries.push_back(field_entry("params", fmt::format("workload.{}", field.path), field));
+    return entries;
+}
+
+std::vector<CatalogueEntry> counters() {
+    std::vector<CatalogueEntry> entries;
+    for (const StageReference& stage : stage_reference())
+        for (const sim::FieldInfo& field : stage.counters)
+            entries.push_back(field_entry("stats", fmt::format("{}.{}", stage.stage, field.path), field));
+    return entries;
+}
+
+} // namespace
+
+const std::vector<CatalogueTopic>& catalogue_topics() {
+    static const std::vector<CatalogueTopic> topics{
+        {"gpus", "simulated GPUs (--gpu)", true, gpus},
+        {"designs", "k-buffer designs (--designs, --design)", true, designs},
+        {"programs", "what a fragment does to the entries of its pixel", true, programs},
+        {"workloads", "rendering methods (--workload)", true, workloads},
+        {"generators", "scenes made by rule (SCENE)", true, generators},
+        {"params", "every number of GPU, designs and workloads (--set)", false, parameters},
+        {"stats", "every counter of every stage", false, counters}};
+    return topics;
+}
+
+std::vector<CatalogueEntry> catalogue_find(std::string_view name) {
+    std::vector<CatalogueEntry> exact, below;
+    for (const CatalogueTopic& topic : catalogue_topics())
+        for (CatalogueEntry& entry : topic.entries()) {
+            const std::string_view path = entry.name;
+            if (path == name || path == fmt::format("gen:{}", name))
+                exact.push_back(std::move(entry));
+            else if (path.size() > name.size() && path.starts_with(name) && path[name.size()] == '.')
+                below.push_back(std::move(entry));
+        }
+    return exact.empty() ? below : exact;
+}
+
+ordered_json catalogue_json(const std::vector<CatalogueEntry>& entries) {
+    ordered_json list = ordered_json::array();
+    for (const CatalogueEntry& entry : entries) {
+        ordered_json json = {{"topic", entry.topic}, {"name", entry.name}, {"summary", entry.summary}};
+        for (const sim::FieldInfo& field : entry.details)
+            json["details"].push_back({{"path", field.path},
+                                       {"type", field.type},
+                                       {"unit", field.unit},
+                                       {"text", field.text},
+                                       {"default", field.default_value},
+                                       {"range", field.range}});
+        list.push_back(std::move(json));
+    }
+    return list;
+}
+
+std::string detail_text(const sim::FieldInfo& field) {
+    std::string text = field.text;
+    if (!field.unit.empty()) text += fmt::format(" [{}]", field.unit);
+    if (!field.range.empty()) text += "; " + field.range;
+    const bool counts =
+        field.type.find("counter") != std::string::npos || field.type == "high water" || field.type == "histogram";
+    if (!counts && !field.default_value.empty()) text += "; " + field.default_value + " by default";
+    return text;
+}
+
+} // namespace reports

@@ -25,9 +25,8 @@ struct Sphere {
 };
 
 Sphere bounding_sphere(const Scene& scene) {
-    const glm::dvec3 lo(scene.lo), hi(scene.hi);
-    const double radius = glm::length(hi - lo) / 2.0;
-    return {(lo + hi) / 2.0, radius > 0.0 ? radius : 1.0};
+    const double radius = static_cast<double>(scene.radius);
+    return {(glm::dvec3(scene.lo) + glm::dvec3(scene.hi)) / 2.0, radius > 0.0 ? radius : 1.0};
 }
 
 glm::dmat4 perspective(double fovy, double aspect, double near, double far) {

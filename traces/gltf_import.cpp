@@ -84,11 +84,12 @@ Scene import_gltf(const std::filesystem::path& path, const std::string& which) {
     gltf::Document document(path);
     Scene scene;
     scene.resources = std::make_shared<pipeline::Resources>();
-    scene.name = path.filename().string() + (which.empty() ? "" : "#" + which);
+    scene.name = document.name(); // with its folders, for errors
     scene.hash = document.hash();
     Importer(document, which, scene).run();
     scene.notes = std::move(document.notes);
     finish_scene(scene);
+    scene.name = path.filename().string() + (which.empty() ? "" : "#" + which);
     return scene;
 }
 

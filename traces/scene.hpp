@@ -47,6 +47,7 @@ struct Scene {
     std::vector<Light> lights;
 
     glm::vec3 lo{0.0F}, hi{0.0F}; ///< bounding box of the drawn positions in world space
+    float radius = 0.0F;          ///< largest distance of a drawn position from the middle of the box
 
     std::uint64_t triangles = 0;       ///< of all primitives in the file, each counted once
     std::uint64_t triangles_drawn = 0; ///< of all instances of all draws

@@ -148,7 +148,7 @@ void Document::note_unread_extensions() {
         if (!is_read_extension(extension)) notes.push_back(fmt::format("extension {} is not read", extension));
     if (!model_.animations.empty())
         notes.push_back(
-            fmt::format("{} animations are not played: the scene is in its rest pose", model_.animations.size()));
+            fmt::format("animations ({}) are not played: the scene is in its rest pose", model_.animations.size()));
 }
 
 std::string place_of(std::string_view kind, std::size_t index, const std::string& name) {

@@ -5,8 +5,8 @@
 // Source: specification 004, section 7.1 (hazard definition, H1-H4).
 #pragma once
 
+#include "pipeline/output/hazards.hpp"
 #include "pipeline/output/surface_layout.hpp"
-#include "pipeline/run_result.hpp"
 
 #include <array>
 #include <vector>

@@ -14,7 +14,7 @@ enum class Activity : std::uint8_t {
     busy,    ///< made progress; ticks again at the next edge
     starved, ///< holds nothing and waits for input
     blocked, ///< has output and waits for room downstream
-    hazard,  ///< waits for another fragment of the same pixel or tile
+    hazard,  ///< waits for other work on the same data
     memory,  ///< waits for memory, or for latency inside the unit
 };
 

@@ -29,7 +29,7 @@ class Config {
     static Config from_toml_file(const std::filesystem::path& path);
     static Config from_toml_text(std::string_view text, std::string name);
 
-    /// "rop.tiles=64", as from the command line; later ones win. Text needs no quotes: "rop.visibility=writeback".
+    /// "cache.lines=64", as from the command line; later ones win. Text needs no quotes: "cache.policy=lru".
     void set(std::string_view assignment);
 
     /// Overwrites those fields of `object` that are configured below the dotted path `section` ("" is the root).

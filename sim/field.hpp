@@ -47,7 +47,7 @@ concept Number = Integer<T> || std::floating_point<T>;
 
 namespace detail {
 
-// "... [with auto Member = &S::tiles; ...]" or "... [Member = &S::tiles]" -> "tiles"
+// "... [with auto Member = &S::lines; ...]" or "... [Member = &S::lines]" -> "lines"
 template <auto Member>
 consteval std::string_view member_name() {
     std::string_view text = __PRETTY_FUNCTION__;

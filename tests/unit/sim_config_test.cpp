@@ -3,6 +3,7 @@
 
 #include <fstream>
 #include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
 
 namespace {
 
@@ -178,6 +179,19 @@ TEST(Config, FilesThatCannotBeReadAreNamed) {
     Config config = Config::from_toml_file(path);
     EXPECT_EQ(read(config).tiles, 9U);
     std::filesystem::remove(path);
+}
+
+RC_GTEST_PROP(Config, AnyTextIsReadOrRefusedInOneLine, ()) {
+    const auto part = rc::gen::element<std::string>("[", "]", "rop", "tiles", ".", "=", "{", "}", "value", "origin",
+                                                    "\"", "'", "\n", ",", " ", "5", "-1", "1e9", "true", "1979-05-27",
+                                                    "#", "\\", "\xff", std::string(1, '\0'));
+    std::string text;
+    for (const std::string& piece : *rc::gen::container<std::vector<std::string>>(part)) text += piece;
+    const std::string in_file = error_in(text);
+    RC_ASSERT(in_file == "no error" || in_file.find("g70.toml:") == 0U);
+    RC_ASSERT(in_file.find('\n') == std::string::npos);
+    const std::string in_option = error_of_set(text);
+    RC_ASSERT(in_option == "no error" || in_option.find("--set: ") == 0U);
 }
 
 TEST(Config, ValuesMayStateTheirOrigin) {

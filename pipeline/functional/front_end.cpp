@@ -55,8 +55,8 @@ void make_plan(FrontEndPlan& plan, FragmentStream& stream, const std::vector<Dra
         if (known == used.end()) known = used.emplace(draw.geometry, used_vertices(plan.resources, geometry)).first;
         for (std::size_t i = 0; i < draw.instances.size(); ++i) {
             const glm::mat4& model = draw.instances[i];
-            plan.instances.push_back(
-                {&geometry, &material, &model, known->second, vertices, culling_of(plan.options.both_faces || material.double_sided, model)});
+            plan.instances.push_back({&geometry, &material, &model, known->second, vertices,
+                                      culling_of(plan.options.both_faces || material.double_sided, model)});
             if (primitives + count > std::numeric_limits<std::uint32_t>::max())
                 throw sim::InputError(
                     fmt::format("draw {} \"{}\": expected at most 2^32 - 1 primitives in a pass", number, draw.name));

@@ -93,14 +93,17 @@ CornerWeights AttributePlanes::at(std::int32_t x, std::int32_t y, unsigned cover
         const bool good = largest < sum * largest_weight;
         const double inverse = good ? 1.0 / sum : 0.0;
         bad |= (good ? 0U : 1U) << lane;
-        for (std::size_t i = 0; i < 3; ++i) weights.of[i][lane] = static_cast<float>(shares[i][lane] * inverse);
+        weights.of1[lane] = static_cast<float>(shares[1][lane] * inverse);
+        weights.of2[lane] = static_cast<float>(shares[2][lane] * inverse);
     }
     bad &= ~covered;
     if (bad == 0) return weights;
     const auto first = static_cast<std::size_t>(std::countr_zero(covered));
-    for (std::size_t lane = 0; lane < 4; ++lane)
-        if (((bad >> lane) & 1U) != 0)
-            for (Lanes& corner : weights.of) corner[lane] = corner[first];
+    for (std::size_t lane = 0; lane < 4; ++lane) {
+        if (((bad >> lane) & 1U) == 0) continue;
+        weights.of1[lane] = weights.of1[first];
+        weights.of2[lane] = weights.of2[first];
+    }
     return weights;
 }
 

@@ -1,7 +1,7 @@
 // What a triangle's depth and attributes are at the four pixel centres of a quad.
 //
 // Attributes: the corners' weights are exact edge functions divided by the area in binary64. At covered pixels none is
-// negative, so no attribute leaves the range of the corners, however thin the triangle is.
+// negative, so no attribute leaves the range of the corners (but for rounding), however thin the triangle is.
 // Depth: the plane through the corners as they were before they were snapped to the sub-pixel grid (Mesa does the
 // same), so that surfaces in one plane have one depth whatever their triangles; clamped to the range of the corners'
 // depths.
@@ -32,15 +32,15 @@ class DepthPlane {
     float least_, greatest_;
 };
 
-/// Shares of the three corners in the attributes at each pixel.
+/// Shares of corners 1 and 2 in the attributes at each pixel; the rest is corner 0's.
 struct CornerWeights {
-    std::array<Lanes, 3> of;
+    Lanes of1, of2;
 
-    /// The attribute that has these values at the corners.
+    /// The attribute that has these values at the corners; exactly that value where all three are equal.
     Lanes interpolate(float at0, float at1, float at2) const {
+        const float to1 = at1 - at0, to2 = at2 - at0;
         Lanes result;
-        for (std::size_t lane = 0; lane < 4; ++lane)
-            result[lane] = of[0][lane] * at0 + of[1][lane] * at1 + of[2][lane] * at2;
+        for (std::size_t lane = 0; lane < 4; ++lane) result[lane] = at0 + (of1[lane] * to1 + of2[lane] * to2);
         return result;
     }
 };

@@ -79,7 +79,7 @@ TEST(DepthFormat, CodesAreNearestAndOrdered) {
 }
 
 TEST(DepthFormat, ComparesInTheFormatNotInFloat) {
-    const float near = 0.5F, far = 0.5F + 0x1p-20F; // differ in D24 and D32F, not in D16
+    const float near = 0.4F, far = 0.4F + 0x1p-20F; // differ in D24 and D32F, not in D16
     EXPECT_FALSE(depth_less(depth_code(DepthFormat::d16, near), depth_code(DepthFormat::d16, far)));
     EXPECT_TRUE(depth_less(depth_code(DepthFormat::d24, near), depth_code(DepthFormat::d24, far)));
     const float closer = std::nextafter(near, 0.0F); // less than a unit of D24

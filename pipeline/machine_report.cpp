@@ -67,7 +67,6 @@ void Machine::list_units(RunResult& result) const {
             result.left_out.emplace_back(unit, std::move(reason));
     };
     const Units&      units  = *units_;
-    const std::string design(design_->id());
     const bool        shader_site = units.payloads.has_value();
     for (const char* unit : {"command processor", "vertex reuse", "vertex fetch", "vertex shader", "primitive assembly",
                              "clip and cull", "triangle setup", "rasterizer", "fragment scheduler", "fragment pipelines",
@@ -76,10 +75,10 @@ void Machine::list_units(RunResult& result) const {
     part(units.front.has_index_fetch(), "index fetch", "no draw is indexed");
     part(units.early_depth.has_value(), "early depth test", "no pass tests a depth surface that it does not write");
     part(textures_linked_, "texture path to memory", "no texture and no peeled layer is read");
-    part(plan_.scheduling.guard != nullptr, "dispatch guard and side buffer", design + " lets every quad into the pipes");
-    part(shader_site, "k-buffer read path of the shaders", design + " does not read the k-buffer in the shader");
-    part(plan_.site == UpdateSite::blender && units.kbuffer, "programmable blender", design + " does not modify pixels in the ROP");
-    part(units.kbuffer.has_value(), "k-buffer surface and its tile cache", design + " keeps its layers in depth and colour surfaces");
+    part(plan_.scheduling.guard != nullptr, "dispatch guard and side buffer", "the design lets every quad into the pipes");
+    part(shader_site, "k-buffer read path of the shaders", "the design does not read the k-buffer in the shader");
+    part(plan_.site == UpdateSite::blender && units.kbuffer, "programmable blender", "the design does not modify pixels in the ROP");
+    part(units.kbuffer.has_value(), "k-buffer surface and its tile cache", "the design keeps its layers in depth and colour surfaces");
     part(uses_depth(), "depth tile cache", "no pass tests or writes depth");
     part(uses_colour(), "colour tile cache", "no pass writes colour");
     for (const LeftOut& item : frame_->left_out)

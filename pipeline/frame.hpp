@@ -22,6 +22,10 @@ enum class PassKind : std::uint8_t {
     resolve, ///< one full-screen pass that reads the k-buffer and writes the picture; not timed (specification W2, pass 2)
 };
 
+/// `over`: rgb = source * a + target * (1 - a), alpha = a + target * (1 - a), with a = source alpha, colours not
+/// premultiplied. `add` sums and saturates (RGBA8). `least` and `greatest` act per channel.
+enum class BlendMode : std::uint8_t { replace, over, add, least, greatest };
+
 struct DepthState {
     bool test  = false; ///< LESS against the depth surface; a strict test keeps the first of equal depths
     bool write = false;
@@ -35,6 +39,7 @@ struct Pass {
     std::vector<std::uint32_t> draws;  ///< indices into Frame::draws; draw passes only
     DepthState                 depth;
     bool                       colour  = false; ///< writes the shaded colour to the "colour" surface
+    BlendMode                  blend   = BlendMode::replace; ///< how; but for replace, Frame::opacity scales the alpha
     bool                       both_faces = false; ///< draws triangles that face away, too
     bool                       kbuffer = false; ///< fragments go through the frame's modify program
 };

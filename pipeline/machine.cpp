@@ -1,20 +1,14 @@
 #include "pipeline/machine.hpp"
 
+#include "pipeline/functional/colour_format.hpp"
 #include "pipeline/functional/shader.hpp"
 #include "pipeline/machine_units.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <utility>
 
 namespace pipeline {
-
-namespace {
-
-constexpr std::uint32_t bytes_of_format(ColourFormat format) {
-    return format == ColourFormat::rgba8 ? 4 : format == ColourFormat::rgba16f ? 8 : 16;
-}
-
-} // namespace
 
 Machine::Machine(const GpuParams& gpu, const Frame& frame, std::span<const FragmentStream> streams,
                  const KBufferDesign& design, const MachineOptions& options)
@@ -69,7 +63,7 @@ void Machine::build() {
                                  gpu_.texture, pass, partitions, shader_site ? &plan_.shader : nullptr, payloads);
     units.reorder_buffer.emplace(context("reorder_buffer"), gpu_.reorder_buffer, gpu_.fragment.pipes, gpu_.reorder_quads());
     units.crossbar.emplace(context("crossbar"), gpu_.crossbar, pass, partitions);
-    const RopSurfaces surfaces{&units.depth, units.kbuffer ? &*units.kbuffer : nullptr, &*units.history, payloads};
+    const RopSurfaces surfaces{&units.fixed, units.kbuffer ? &*units.kbuffer : nullptr, &*units.history, payloads};
     for (std::uint32_t rop = 0; rop < partitions; ++rop)
         units.rops.emplace_back(context(fmt::format("rop{}", rop)), gpu_.rop, pass, plan_, surfaces,
                                 RopShape{gpu_.fragment.pipes, frame_->draws.size(), uses_depth() || options_.build_everything,
@@ -202,11 +196,13 @@ void Machine::clear(const Pass& pass) {
     std::uint64_t     bytes  = 0;
     for (const std::string& surface : pass.writes) {
         if (surface == "depth") {
-            units_->depth.depth.assign(pixels, farthest_depth(frame_->depth_format));
-            units_->depth.winner.assign(pixels, ~QuadId{0});
+            units_->fixed.depth.assign(pixels, farthest_depth(frame_->depth_format));
             bytes += pixels * depth_bytes(frame_->depth_format);
         }
-        if (surface == "colour") bytes += pixels * bytes_of_format(frame_->colour_format);
+        if (surface == "colour") {
+            units_->fixed.colour.assign(pixels, through_format(frame_->colour_format, frame_->background));
+            bytes += pixels * colour_bytes(frame_->colour_format);
+        }
         // Peeling clears its layers one by one instead.
         if (surface == "kbuffer" && units_->kbuffer) bytes += pixels * frame_->program->bytes_per_pixel();
     }
@@ -216,11 +212,15 @@ void Machine::clear(const Pass& pass) {
 
 void Machine::draw(const Pass& pass, const FragmentStream& stream) {
     PassContext& context = units_->pass;
+    FixedSurfaces&    fixed  = units_->fixed;
     const std::size_t pixels = std::size_t{frame_->view.width} * frame_->view.height;
-    if (units_->depth.winner.empty()) units_->depth = {std::vector(pixels, farthest_depth(frame_->depth_format)), std::vector(pixels, ~QuadId{0})};
+    fixed.winner.resize(pixels, ~QuadId{0});
+    if (pass.depth.test || pass.depth.write) fixed.depth.resize(pixels, farthest_depth(frame_->depth_format));
+    if (pass.colour) fixed.colour.resize(pixels, through_format(frame_->colour_format, frame_->background));
     context.depth        = pass.depth;
+    context.blend        = pass.blend;
     context.colour_write = pass.colour;
-    context.colour_bytes = bytes_of_format(frame_->colour_format);
+    context.colour_bytes = colour_bytes(frame_->colour_format);
     context.depth_format = frame_->depth_format;
     context.read_only_format = frame_->depth_format;
     context.depth_bytes  = depth_bytes(frame_->depth_format);
@@ -231,15 +231,14 @@ void Machine::draw(const Pass& pass, const FragmentStream& stream) {
         begin(pass.name);
         run_draw(stream);
         end();
-        units_->opaque = units_->depth;
         return;
     }
     CHECK_MSG(!pass.depth.write, "a k-buffer pass does not write the depth surface");
-    context.read_only_depth = pass.depth.test ? &units_->opaque.depth : nullptr;
     if (plan_.site == UpdateSite::passes) {
         draw_layers(pass, stream);
         return;
     }
+    context.read_only_depth = pass.depth.test ? &fixed.depth : nullptr;
     context.end = plan_.site == UpdateSite::blender ? FragmentEnd::kbuffer_blend : FragmentEnd::kbuffer_store;
     begin(pass.name);
     run_draw(stream);
@@ -252,8 +251,11 @@ void Machine::draw_layers(const Pass& pass, const FragmentStream& stream) {
     const ModifyProgram& program = *frame_->program;
     const std::size_t    pixels  = std::size_t{frame_->view.width} * frame_->view.height;
     const std::size_t    floats  = program.floats_per_pixel();
+    units_->drawn                = std::exchange(units_->fixed, {});
+    context.read_only_depth      = pass.depth.test ? &units_->drawn.depth : nullptr;
     context.end                  = FragmentEnd::depth_colour;
     context.depth                = {true, true};
+    context.blend                = BlendMode::replace;
     context.depth_format         = plan_.passes.depth_format;
     context.depth_bytes          = depth_bytes(context.depth_format);
     context.colour_write         = program.needs_colour();
@@ -263,22 +265,23 @@ void Machine::draw_layers(const Pass& pass, const FragmentStream& stream) {
     PeeledLayer layer;
     for (std::uint32_t i = 0; i < program.k(); ++i) {
         begin(fmt::format("{} layer {}", pass.name, i));
-        units_->depth.depth.assign(pixels, farthest_depth(context.depth_format));
-        units_->depth.winner.assign(pixels, ~QuadId{0});
+        units_->fixed.depth.assign(pixels, farthest_depth(context.depth_format));
+        units_->fixed.winner.assign(pixels, ~QuadId{0});
         if (!gpu_.rop.fast_clear)
             stream_surface(0, pixels * (context.depth_bytes + (context.colour_write ? context.colour_bytes : 0)));
         context.behind = i == 0 ? nullptr : &layer;
         run_draw(stream);
         for (std::size_t pixel = 0; pixel < pixels; ++pixel) keep_layer(i, pixel, stream);
-        layer = {units_->depth.depth, units_->depth.winner};
+        layer = {units_->fixed.depth, units_->fixed.winner};
         if (i + 1 < program.k()) stream_surface(pixels * context.depth_bytes, pixels * context.depth_bytes);
         end();
     }
     context.behind = nullptr;
+    units_->fixed  = std::move(units_->drawn);
 }
 
 void Machine::keep_layer(std::uint32_t layer, std::size_t pixel, const FragmentStream& stream) {
-    const QuadId winner = units_->depth.winner[pixel];
+    const QuadId winner = units_->fixed.winner[pixel];
     if (winner == ~QuadId{0}) return;
     const ModifyProgram& program = *frame_->program;
     const Quad&          quad    = stream.quads[winner];
@@ -295,10 +298,7 @@ RunResult Machine::run(const ReferenceImage& reference) {
     for (const Pass& pass : frame_->passes) {
         switch (pass.kind) {
         case PassKind::clear: clear(pass); break;
-        case PassKind::draw:
-            if (!pass.kbuffer) opaque_stream_ = next;
-            draw(pass, streams_[next++]);
-            break;
+        case PassKind::draw: draw(pass, streams_[next++]); break;
         case PassKind::resolve: break; // not timed
         }
     }

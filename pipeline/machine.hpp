@@ -77,7 +77,6 @@ class Machine {
     std::unique_ptr<Units>          units_;
     std::vector<PassResult>         passes_;
     std::vector<float>              layers_; ///< k-buffer content put together from peeled layers
-    std::size_t                     opaque_stream_   = 0; ///< stream of the depth-buffered pass
     bool                            textures_linked_ = false;
 };
 

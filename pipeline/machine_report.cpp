@@ -1,5 +1,4 @@
 // What a machine says after a run: pixels against the reference, hazards, counters by stage, pass and draw.
-#include "pipeline/functional/colour_format.hpp"
 #include "pipeline/image_difference.hpp"
 #include "pipeline/machine_units.hpp"
 #include "pipeline/memory/unit_report.hpp"
@@ -103,29 +102,17 @@ void Machine::collect_pixels(RunResult& result, const ReferenceImage& reference)
             if (std::bit_cast<std::uint32_t>(result.colour[at]) != std::bit_cast<std::uint32_t>(reference.colour[at]))
                 result.wrong_mask[at / 4] = 1;
     }
-    if (frame_->needs.depth && !units.opaque.depth.empty())
+    if (frame_->needs.depth && !units.fixed.depth.empty())
         for (std::size_t pixel = 0; pixel < reference.depth.size(); ++pixel)
-            if (depth_value(frame_->depth_format, units.opaque.depth[pixel]) != reference.depth[pixel])
+            if (depth_value(frame_->depth_format, units.fixed.depth[pixel]) != reference.depth[pixel])
                 result.wrong_mask[pixel] = 1;
     result.wrong_pixels = static_cast<std::uint64_t>(std::count(result.wrong_mask.begin(), result.wrong_mask.end(), 1));
 }
 
-// The colour surface of the depth-buffered pass: the shaded colour of the fragment that won each pixel.
 std::vector<float> Machine::colour_surface() const {
-    const std::size_t  pixels     = std::size_t{frame_->view.width} * frame_->view.height;
-    const glm::vec4    background = through_format(frame_->colour_format, frame_->background);
-    std::vector<float> image(pixels * 4);
-    for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
-        const QuadId winner = units_->opaque.winner.empty() ? ~QuadId{0} : units_->opaque.winner[pixel];
-        glm::vec4    colour = background;
-        if (winner != ~QuadId{0}) {
-            const FragmentStream& stream = streams_[opaque_stream_];
-            const Quad&           quad   = stream.quads[winner];
-            const std::size_t     corner = (pixel / frame_->view.width - quad.y) * 2 + (pixel % frame_->view.width - quad.x);
-            colour = through_format(frame_->colour_format, stream.colours[winner][corner]);
-        }
-        for (int channel = 0; channel < 4; ++channel) image[pixel * 4 + static_cast<std::size_t>(channel)] = colour[channel];
-    }
+    std::vector<float> image;
+    image.reserve(units_->fixed.colour.size() * 4);
+    for (const glm::vec4& colour : units_->fixed.colour) image.insert(image.end(), {colour.r, colour.g, colour.b, colour.a});
     return image;
 }
 

@@ -49,8 +49,8 @@ struct Machine::Units {
     std::optional<KBufferMemory> kbuffer;
     std::optional<StoreHistory>  history;
     std::optional<QuadPayloads>  payloads;
-    DepthSurface                 depth;
-    DepthSurface                 opaque; ///< result of the depth-buffered passes before the k-buffer pass
+    FixedSurfaces                fixed;
+    FixedSurfaces                drawn; ///< result of the earlier passes, while a k-buffer pass peels its layers
 
     MemorySystem                      memory;
     GeometryFront                     front;

@@ -89,8 +89,12 @@ class PassRunner {
     }
 
     void write_colour(QuadId quad) {
-        const glm::vec4 colour = through_format(frame_.colour_format, stream_.colours[quad][lane_]);
-        for (int i = 0; i < 4; ++i) surfaces_.colour[pixel_ * 4 + static_cast<std::size_t>(i)] = colour[i];
+        float* stored = surfaces_.colour.data() + pixel_ * 4;
+        glm::vec4 source = stream_.colours[quad][lane_];
+        if (pass_.blend != BlendMode::replace) source.a *= frame_.opacity;
+        const glm::vec4 colour =
+            write_through(frame_.colour_format, pass_.blend, source, {stored[0], stored[1], stored[2], stored[3]});
+        for (int i = 0; i < 4; ++i) stored[i] = colour[i];
     }
 
     void insert(QuadId quad, float depth) {

@@ -170,7 +170,8 @@ void PassGraph::add_clear(std::string name, std::vector<std::string> writes) {
 }
 
 void PassGraph::add_draw(std::string name, std::vector<std::string> reads, std::vector<std::string> writes,
-                         std::vector<std::uint32_t> draws, bool both_faces) {
+                         std::vector<std::uint32_t> draws, bool both_faces,
+                         pipeline::BlendMode blend) {
     for (const std::uint32_t draw : draws) CHECK(draw < frame_.draws.size());
     CHECK(!contains(writes, kbuffer_surface) || frame_.program != nullptr);
     Pass pass;
@@ -179,6 +180,7 @@ void PassGraph::add_draw(std::string name, std::vector<std::string> reads, std::
     pass.writes = std::move(writes);
     pass.draws = std::move(draws);
     pass.both_faces = both_faces;
+    pass.blend = blend;
     if (contains(pass.writes, kbuffer_surface) && !contains(pass.reads, kbuffer_surface))
         pass.reads.emplace_back(kbuffer_surface);
     passes_.push_back(std::move(pass));

@@ -24,9 +24,11 @@ class PassGraph {
 
     void add_clear(std::string name, std::vector<std::string> writes);
     /// `reads` and `writes` take depth, colour and kbuffer: reading depth tests against it, writing depth stores it,
-    /// writing kbuffer runs the program (which reads the entries as well). `both_faces` turns face culling off.
+    /// writing kbuffer runs the program (which reads the entries as well). `both_faces` turns face culling off; `blend`
+    /// is how colours are written, and blending reads the colour surface.
     void add_draw(std::string name, std::vector<std::string> reads, std::vector<std::string> writes,
-                  std::vector<std::uint32_t> draws, bool both_faces = false);
+                  std::vector<std::uint32_t> draws, bool both_faces = false,
+                  pipeline::BlendMode blend = pipeline::BlendMode::replace);
     void add_resolve(std::string name, std::vector<std::string> reads, std::vector<std::string> writes);
     /// This surface is what the frame is for.
     void output(std::string surface);

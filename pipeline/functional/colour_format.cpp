@@ -123,4 +123,16 @@ Codes blend(BlendMode mode, const Codes& source, const Codes& target) {
     return result;
 }
 
+glm::vec4 write_through(ColourFormat format, BlendMode mode, const glm::vec4& source, const glm::vec4& stored) {
+    if (mode == BlendMode::replace) return through_format(format, source);
+    if (format != ColourFormat::rgba8) return through_format(format, blend(mode, source, stored));
+    std::array<std::byte, 4> bytes{};
+    const auto code = [&bytes](const glm::vec4& colour) {
+        pack_colour(ColourFormat::rgba8, colour, bytes.data());
+        return std::bit_cast<glm::tvec4<std::uint8_t>>(bytes);
+    };
+    bytes = std::bit_cast<std::array<std::byte, 4>>(blend(mode, code(source), code(stored)));
+    return unpack_colour(ColourFormat::rgba8, bytes.data());
+}
+
 } // namespace pipeline

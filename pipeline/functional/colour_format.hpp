@@ -23,10 +23,6 @@ glm::vec4 unpack_colour(ColourFormat format, const std::byte* source);
 /// The colour that is read back after storing `colour`.
 glm::vec4 through_format(ColourFormat format, const glm::vec4& colour);
 
-/// `over`: rgb = source * a + target * (1 - a), alpha = a + target * (1 - a), with a = source alpha, colours not
-/// premultiplied. `add` sums and saturates (RGBA8). `least` and `greatest` act per channel.
-enum class BlendMode : std::uint8_t { replace, over, add, least, greatest };
-
 /// Blending in a float format.
 glm::vec4 blend(BlendMode mode, const glm::vec4& source, const glm::vec4& target);
 
@@ -34,5 +30,9 @@ glm::vec4 blend(BlendMode mode, const glm::vec4& source, const glm::vec4& target
 /// saturate. `source` is converted to 8 bits first, as the fixed-function units do.
 glm::tvec4<std::uint8_t> blend(BlendMode mode, const glm::tvec4<std::uint8_t>& source,
                                const glm::tvec4<std::uint8_t>& target);
+
+/// What a colour surface holds after a fragment with colour `source` was written over, or blended with, `stored`, which
+/// is a colour read from it.
+glm::vec4 write_through(ColourFormat format, BlendMode mode, const glm::vec4& source, const glm::vec4& stored);
 
 } // namespace pipeline

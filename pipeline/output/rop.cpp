@@ -1,5 +1,7 @@
 #include "pipeline/output/rop.hpp"
 
+#include "pipeline/functional/colour_format.hpp"
+
 #include <algorithm>
 #include <bit>
 
@@ -76,7 +78,8 @@ std::uint64_t Rop::tile_address(Use use, std::uint32_t tile) const {
 
 // Stores overwrite whole pixels under a byte mask; only what is combined with the stored value is fetched.
 bool Rop::fetches(Use use) const {
-    return use == Use::depth || (use == Use::kbuffer && pass_->end == FragmentEnd::kbuffer_blend);
+    return use == Use::depth || (use == Use::colour && pass_->blend != BlendMode::replace) ||
+           (use == Use::kbuffer && pass_->end == FragmentEnd::kbuffer_blend);
 }
 
 void Rop::request(std::uint64_t address, std::uint32_t bytes, std::uint32_t tag, MemoryClient client, bool write,
@@ -243,20 +246,31 @@ std::uint32_t Rop::run_depth_colour(const Queued& queued) {
         if ((queued.task.mask >> pixel & 1) == 0) continue;
         const std::size_t at = static_cast<std::size_t>(quad.y + pixel / 2) * pass_->layout.width + quad.x + pixel % 2;
         const DepthCode   code = depth_code(pass_->depth_format, pass_->stream->depths[queued.task.quad][pixel]);
-        if (pass_->depth.test && !depth_less(code, surfaces_.depth->depth[at])) {
+        if (pass_->depth.test && !depth_less(code, surfaces_.fixed->depth[at])) {
             ++stats_.depth_failed;
             continue;
         }
         ++stats_.depth_passed;
         ++passed;
-        if (pass_->depth.write) surfaces_.depth->depth[at] = code;
-        surfaces_.depth->winner[at] = queued.task.quad;
+        if (pass_->depth.write) surfaces_.fixed->depth[at] = code;
+        surfaces_.fixed->winner[at] = queued.task.quad;
+        if (!surfaces_.fixed->colour.empty()) write_colour(queued.task.quad, pixel, at);
     }
     if (passed != 0 && pass_->depth.write) depth_tiles_.mark_dirty(queued.entry[0]);
     if (passed != 0 && pass_->colour_write) colour_tiles_.mark_dirty(queued.entry[1]);
     const auto          fragments = static_cast<std::uint32_t>(std::popcount(queued.task.mask));
-    const std::uint32_t bytes = fragments * 2 * pass_->depth_bytes + (pass_->colour_write ? passed * pass_->colour_bytes : 0);
-    return std::max(1U, bytes / (rops() * params_.bytes_per_clk));
+    const std::uint32_t depth     = pass_->depth.test || pass_->depth.write ? fragments * 2 * pass_->depth_bytes : 0;
+    const std::uint32_t colour    = pass_->colour_write ? passed * pass_->colour_bytes : 0;
+    const std::uint32_t bytes     = depth + (pass_->blend == BlendMode::replace ? colour : 2 * colour);
+    const std::uint32_t per_cycle = rops() * params_.bytes_per_clk;
+    return std::max(1U, (bytes + per_cycle - 1) / per_cycle);
+}
+
+void Rop::write_colour(QuadId quad, std::uint32_t pixel, std::size_t at) {
+    glm::vec4 source = pass_->stream->colours[quad][pixel];
+    if (pass_->blend != BlendMode::replace) source.a *= pass_->frame->opacity;
+    glm::vec4& stored = surfaces_.fixed->colour[at];
+    stored            = write_through(pass_->frame->colour_format, pass_->blend, source, stored);
 }
 
 std::uint32_t Rop::run_store(const Queued& queued) {

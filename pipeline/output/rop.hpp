@@ -1,7 +1,7 @@
 // A ROP partition: the raster operations of the pixels it owns, with their tile caches, in front of one memory partition.
 //
 // Modelled: in-order input queue whose tile lookups run ahead of execution; tile caches for depth, colour and k-buffer;
-// depth test and colour write; stores of k-buffer values computed by the shader; the programmable blender with its
+// depth test, colour write and fixed blending; stores of k-buffer values computed by the shader; the programmable blender with its
 // interlock; k-buffer reads from texture units, served from the tile cache or from memory as the visibility rule says;
 // write-back on replacement, on command and at the end of a pass; clears and copies as streams of memory traffic.
 // Every access to a pixel's state happens in this one component, reads before writes within a cycle.
@@ -79,10 +79,11 @@ struct RopStats {
 };
 static_assert(sim::fully_described<RopStats>);
 
-/// Depth surface; which fragment won each pixel stands for its colour, too. Row order; each pixel is touched by its owner.
-struct DepthSurface {
+/// What the fixed-function ROP reads and writes, in row order; each pixel is touched by the partition that owns it.
+struct FixedSurfaces {
     std::vector<DepthCode> depth;
     std::vector<QuadId>    winner; ///< ~0 = cleared
+    std::vector<glm::vec4> colour; ///< linear RGBA, as the colour format holds it; empty when no pass writes colour
 };
 
 /// What one draw did to the output stage.
@@ -93,7 +94,7 @@ struct DrawOutput {
 
 /// Surfaces and per-pixel books that all partitions of a machine share, each its own pixels.
 struct RopSurfaces {
-    DepthSurface*  depth   = nullptr;
+    FixedSurfaces* fixed   = nullptr;
     KBufferMemory* kbuffer = nullptr;
     StoreHistory*  history = nullptr;
     QuadPayloads*  payloads = nullptr;
@@ -178,6 +179,7 @@ class Rop final : public sim::Component {
     void          publish(std::uint32_t tile);
     void          sample(const KBufferRead& read, std::uint64_t targets);
     std::uint32_t run_depth_colour(const Queued& queued);
+    void          write_colour(QuadId quad, std::uint32_t pixel, std::size_t at);
     std::uint32_t run_store(const Queued& queued);
     std::uint32_t run_blend(const Queued& queued);
     void          apply_pending_blends();

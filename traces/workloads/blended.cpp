@@ -1,0 +1,62 @@
+// Fixed-function blending in submission order: what hardware without a k-buffer does with transparent draws that nobody
+// sorted. The ROP's read-modify-write of the colour surface is safe, because it is fixed and in primitive order.
+//
+// Source: Bavoil 2007, sections 2.1.2 and 4.3.1 (specification 004, section 1, rules 1 and 2).
+#include "pipeline/output/kbuffer_design.hpp" // names of the depth formats
+#include "traces/pass_graph.hpp"
+#include "traces/workloads/methods.hpp"
+
+#include <array>
+#include <numeric>
+
+template <>
+struct sim::EnumNames<pipeline::BlendMode> {
+    static constexpr std::array<std::string_view, 5> names{"replace", "over", "add", "least", "greatest"};
+};
+template <>
+struct sim::EnumNames<pipeline::ColourFormat> {
+    static constexpr std::array<std::string_view, 3> names{"rgba8", "rgba16f", "rgba32f"};
+};
+
+namespace traces {
+
+namespace {
+
+struct BlendedParams {
+    pipeline::BlendMode mode = pipeline::BlendMode::over;
+    float opacity = 0.5F;
+    std::array<float, 3> background = {1.0F, 1.0F, 1.0F};
+    pipeline::ColourFormat colour_format = pipeline::ColourFormat::rgba8;
+
+    static constexpr auto fields() {
+        using P = BlendedParams;
+        return std::tuple(sim::field<&P::mode>("how a fragment's colour is combined with the stored one"),
+                          sim::field<&P::opacity>("scales the alpha of every fragment").range(0.0F, 1.0F),
+                          sim::field<&P::background>("linear RGB behind everything").range(0.0F, 1.0F),
+                          sim::field<&P::colour_format>("format of the colour surface"));
+    }
+};
+static_assert(sim::fully_described<BlendedParams>);
+
+pipeline::Frame build(const Scene& scene, const pipeline::View& view, const BlendedParams& params) {
+    pipeline::Frame frame = frame_of(scene, view);
+    frame.opacity = params.opacity;
+    frame.background = {params.background[0], params.background[1], params.background[2], 1.0F};
+    frame.colour_format = params.colour_format;
+    std::vector<std::uint32_t> all(frame.draws.size());
+    std::iota(all.begin(), all.end(), 0U);
+
+    PassGraph graph(std::move(frame));
+    graph.add_clear("clear", {colour_surface});
+    graph.add_draw("blended", {colour_surface}, {colour_surface}, std::move(all), true, params.mode);
+    graph.output(colour_surface);
+    return graph.lower();
+}
+
+} // namespace
+
+Workload blended_workload() {
+    return make_workload<BlendedParams>("blended", "every draw blended in submission order by the fixed-function ROP", build);
+}
+
+} // namespace traces

@@ -117,7 +117,7 @@ TEST(ClockCrossing, RoomReturnsAtTheSendersFirstEdgeAfterTheReceive) {
         }
 }
 
-TEST(ClockCrossing, AClockThatSleptForLongIsWokenInTime) {
+TEST(ClockCrossing, ASleepingClockIsWokenInTime) {
     for (const sim::Mode mode : {sim::Mode::normal, sim::Mode::shuffled, sim::Mode::never_sleep}) {
         sim::Simulation simulation(1, mode);
         const sim::Clock& core = simulation.add_clock("core", 650);
@@ -302,7 +302,7 @@ TEST(Run, EndlessWorkWithoutMessagesIsALivelock) {
     }
 }
 
-TEST(Run, LongWaitsAndSlowMessagesAreNoLivelock) {
+TEST(Run, WaitsAndSlowMessagesAreNoLivelock) {
     Rig rig;
     rig.simulation.set_patience(5000);
     Source<int> source(rig.context("source"), {1, 2, 3, 4}, {.gap = 4000});

@@ -12,7 +12,7 @@ using pipeline::VertexAttribute;
 namespace {
 
 /// Accessors without data are all zero; this many elements of them are made at most.
-constexpr std::size_t most_zeros = 1U << 24U;
+constexpr std::size_t most_zeros = 1U << 22U;
 
 std::optional<ComponentType> component_type(int type) {
     switch (type) {
@@ -89,7 +89,7 @@ Accessors::Elements Accessors::elements(int index, const Wanted& wanted, std::st
                           "4x4 matrices of floats");
     else
         document_.require(components >= wanted.least_components && components <= wanted.most_components, place,
-                          "{} to {} components, got {}", wanted.least_components, wanted.most_components, components);
+                          "{} components, got {}", wanted.components_text(), components);
     Elements result;
     result.count = accessor.count;
     result.attribute.type = *type;
@@ -150,7 +150,7 @@ void Accessors::overlay(std::vector<glm::vec4>& values, const tinygltf::Accessor
     const auto type = component_type(sparse.indices.componentType);
     document_.require(type.has_value() && is_unsigned_integer(*type), where, "indices of an unsigned type, got {}",
                       sparse.indices.componentType);
-    // Indices pass through floats, which count to 2^24.
+    // Indices pass through floats, which are exact up to 2^24.
     document_.require(values.size() <= most_zeros, where, "at most {} elements, got {}", most_zeros, values.size());
     document_.require(sparse.count >= 1 && static_cast<std::size_t>(sparse.count) <= values.size(), where,
                       "1 to {} elements, got {}", values.size(), sparse.count);

@@ -18,6 +18,11 @@ namespace traces::gltf {
 struct Wanted {
     std::uint8_t least_components = 1, most_components = 4;
     bool matrix = false; ///< 4x4 instead of components
+
+    std::string components_text() const {
+        return least_components == most_components ? fmt::format("{}", least_components)
+                                                   : fmt::format("{} to {}", least_components, most_components);
+    }
 };
 
 class Accessors {

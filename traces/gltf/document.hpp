@@ -36,8 +36,8 @@ class Document {
     /// The element of `list` that a property names; throws when there is none.
     template <class T>
     const T& at(const std::vector<T>& list, int index, std::string_view place, std::string_view what) const {
-        require(index >= 0 && static_cast<std::size_t>(index) < list.size(), place, "a {} below {}, got {}", what,
-                list.size(), index);
+        require(index >= 0 && static_cast<std::size_t>(index) < list.size(), place,
+                "the number of one of {} {}s, got {}", list.size(), what, index);
         return list[static_cast<std::size_t>(index)];
     }
 

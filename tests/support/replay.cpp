@@ -16,7 +16,7 @@ Replay::Replay(const traces::Scene& scene, const ReplayOptions& options) {
                                 options.workload, knobs);
     pipeline::FrontEndOptions front_end;
     front_end.threads = options.threads;
-    streams           = pipeline::rasterize_frame(frame, front_end);
+    streams = pipeline::rasterize_frame(frame, front_end);
     reference = pipeline::run_reference(frame, streams, 1, options.threads);
 }
 

@@ -18,8 +18,8 @@ struct ReplayOptions {
     std::uint32_t width = 128, height = 128;
     std::string workload = "transparency";
     std::string camera = "auto";
-    std::vector<std::string> knobs; ///< of the workload: "k=4", "entry=z"
-    unsigned threads = 0;           ///< of the functional front end; 0 = all cores
+    std::vector<std::string> knobs = {}; ///< of the workload: "k=4", "entry=z"
+    unsigned threads = 0;                ///< of the functional front end; 0 = all cores
 };
 
 class Replay {

@@ -45,6 +45,18 @@ void DramChannel::choose(Bank& bank, sim::Time now) {
     bank.fresh = true;
 }
 
+bool DramChannel::goes_before(const Bank& a, const Bank& b) const {
+    const Fine start = start_of(a);
+    const Fine other = start_of(b);
+    return start != other ? start < other : a.requests[a.next].number < b.requests[b.next].number;
+}
+
+void DramChannel::find_first() {
+    first_ = nullptr;
+    for (Bank& bank : banks_)
+        if (!bank.requests.empty() && (first_ == nullptr || goes_before(bank, *first_))) first_ = &bank;
+}
+
 void DramChannel::enqueue(std::uint64_t local, std::uint32_t bytes, std::uint32_t id, sim::Time now) {
     const std::uint64_t row = local / row_bytes_;
     Bank& bank = banks_[bank_of_row(row)];
@@ -53,29 +65,12 @@ void DramChannel::enqueue(std::uint64_t local, std::uint32_t bytes, std::uint32_
     if (bank.requests.size() > 1) return; // its next request stays what it is
     bank.ready = std::max(bank.ready, now * fine_per_time);
     choose(bank, now);
-}
-
-const DramChannel::Bank* DramChannel::first_ready() const {
-    const Bank* best = nullptr;
-    for (const Bank& bank : banks_) {
-        if (bank.requests.empty()) continue;
-        if (best == nullptr || start_of(bank) < start_of(*best) ||
-            (start_of(bank) == start_of(*best) && bank.requests[bank.next].number < best->requests[best->next].number))
-            best = &bank;
-    }
-    return best;
-}
-
-std::optional<DramChannel::Fine> DramChannel::next_start() const {
-    const Bank* bank = first_ready();
-    if (bank == nullptr) return std::nullopt;
-    return start_of(*bank);
+    if (first_ == nullptr || goes_before(bank, *first_)) first_ = &bank;
 }
 
 std::optional<DramChannel::Transfer> DramChannel::transfer(sim::Time now) {
-    const Bank* first = first_ready();
-    if (first == nullptr || start_of(*first) >= now * fine_per_time + cycle_) return std::nullopt;
-    Bank& bank = banks_[static_cast<std::size_t>(first - banks_.data())];
+    if (first_ == nullptr || start_of(*first_) >= now * fine_per_time + cycle_) return std::nullopt;
+    Bank& bank = *first_;
     const Request request = bank.requests[bank.next];
     bus_free_ = start_of(bank) + request.bytes * per_byte_;
     const Transfer result{request.id, bus_free_, bus_free_ + latency_, !bank.fresh};
@@ -85,6 +80,7 @@ std::optional<DramChannel::Transfer> DramChannel::transfer(sim::Time now) {
     bank.requests.erase(bank.requests.begin() + static_cast<std::ptrdiff_t>(bank.next));
     --waiting_;
     if (!bank.requests.empty()) choose(bank, now);
+    find_first();
     return result;
 }
 

@@ -51,6 +51,8 @@ class DramChannel {
     /// `bandwidth` in GB/s of this channel, above 0; `cycle` is the period of the clock that DramParams counts in. At
     /// most `queue` requests wait at a time.
     DramChannel(const DramParams& params, double bandwidth, sim::Time cycle, std::uint32_t queue);
+    DramChannel(const DramChannel&) = delete;
+    DramChannel& operator=(const DramChannel&) = delete;
 
     /// Takes a request of `bytes` at `local`, an address within this channel. `id` comes back from transfer().
     void enqueue(std::uint64_t local, std::uint32_t bytes, std::uint32_t id, sim::Time now);
@@ -65,7 +67,10 @@ class DramChannel {
     /// The next transfer, if it starts before the clock edge after `now`.
     std::optional<Transfer> transfer(sim::Time now);
     /// Start of the next transfer as things stand; nothing when nobody waits.
-    std::optional<Fine> next_start() const;
+    std::optional<Fine> next_start() const {
+        if (first_ == nullptr) return std::nullopt;
+        return start_of(*first_);
+    }
     Fine bus_free() const { return bus_free_; } ///< end of the last transfer
 
     std::uint32_t bank_of(std::uint64_t local) const { return bank_of_row(local / row_bytes_); }
@@ -92,7 +97,8 @@ class DramChannel {
     /// Finds the next request of a bank, opening its row if none waits for the open one. The bank has requests.
     void choose(Bank& bank, sim::Time now);
     Fine start_of(const Bank& bank) const { return bank.ready > bus_free_ ? bank.ready : bus_free_; }
-    const Bank* first_ready() const;
+    bool goes_before(const Bank& a, const Bank& b) const;
+    void find_first();
 
     std::uint64_t row_bytes_;
     std::uint32_t overtakes_;
@@ -104,6 +110,7 @@ class DramChannel {
     std::uint64_t arrivals_ = 0;
     std::uint32_t waiting_ = 0;
     std::vector<Bank> banks_;
+    Bank* first_ = nullptr; ///< whose next request is transferred next; none: nobody waits
 };
 
 } // namespace pipeline

@@ -23,14 +23,15 @@ MemoryHub::MemoryHub(sim::Context context, const Params& params, std::uint32_t p
       next_client_(partitions, 0),
       reads_(params.reads_in_flight),
       wanted_(partitions, 0) {
-    for (std::uint32_t i = 0; i < partitions; ++i) partitions_.emplace_back(*this);
+    for (std::uint32_t i = 0; i < partitions; ++i) partitions_.push_back(std::make_unique<PartitionPort>(*this));
     free_reads_.reserve(params.reads_in_flight);
     for (std::uint32_t i = params.reads_in_flight; i > 0; --i) free_reads_.push_back(i - 1);
 }
 
 MemoryHub::ClientPort& MemoryHub::add_client() {
     CHECK_MSG(clients_.size() < most_clients, name());
-    return clients_.emplace_back(*this);
+    clients_.push_back(std::make_unique<ClientPort>(*this));
+    return *clients_.back();
 }
 
 std::uint32_t MemoryHub::partition_of(std::uint64_t address) const {
@@ -44,11 +45,11 @@ bool MemoryHub::pass_responses() {
     const std::uint32_t first = next_partition_;
     for (std::uint32_t i = 0; i < count; ++i) {
         const std::uint32_t index = (first + i) % count;
-        PartitionPort& port = partitions_[index];
+        PartitionPort& port = *partitions_[index];
         const MemoryResponse* response = port.responses_in.peek();
         if (response == nullptr) continue;
         const std::uint32_t slot = response->tag;
-        ClientPort& client = clients_[reads_[slot].client];
+        ClientPort& client = *clients_[reads_[slot].client];
         if (!client.responses_out.ready()) continue;
         client.responses_out.send({reads_[slot].tag});
         port.responses_in.pop();
@@ -62,7 +63,7 @@ bool MemoryHub::pass_responses() {
 
 void MemoryHub::grant(std::uint32_t partition, std::uint64_t clients) {
     const std::uint32_t client = next_bit(clients, next_client_[partition]);
-    MemoryRequest request = clients_[client].requests_in.receive();
+    MemoryRequest request = clients_[client]->requests_in.receive();
     CHECK_MSG(request.address % interleave_ + request.bytes <= interleave_, "a request crosses an interleave block");
     if (!request.write) {
         const std::uint32_t slot = free_reads_.back();
@@ -71,7 +72,7 @@ void MemoryHub::grant(std::uint32_t partition, std::uint64_t clients) {
         request.tag = slot;
         stats_.reads_in_flight.note(reads_.size() - free_reads_.size());
     }
-    partitions_[partition].requests_out.send(request);
+    partitions_[partition]->requests_out.send(request);
     next_client_[partition] = (client + 1) % most_clients;
     ++stats_.requests;
     if ((clients & (clients - 1)) != 0) ++stats_.conflicts;
@@ -82,7 +83,7 @@ bool MemoryHub::pass_requests(bool& waiting) {
     const bool room = free_reads_.size() >= partitions_.size(); // each grant of this round may be a read
     std::uint64_t wants = 0;                                    // a bit per partition
     for (std::uint32_t client = 0; client < clients_.size(); ++client) {
-        const MemoryRequest* request = clients_[client].requests_in.peek();
+        const MemoryRequest* request = clients_[client]->requests_in.peek();
         if (request == nullptr) continue;
         waiting = true;
         if (!request->write && !room) continue;
@@ -94,7 +95,7 @@ bool MemoryHub::pass_requests(bool& waiting) {
     bool progress = false;
     for (; wants != 0; wants &= wants - 1) {
         const auto partition = static_cast<std::uint32_t>(std::countr_zero(wants));
-        if (!partitions_[partition].requests_out.ready()) continue;
+        if (!partitions_[partition]->requests_out.ready()) continue;
         grant(partition, wanted_[partition]);
         progress = true;
     }

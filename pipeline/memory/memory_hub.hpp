@@ -10,7 +10,8 @@
 #include "sim/channel.hpp"
 #include "sim/described.hpp"
 
-#include <deque>
+#include <memory>
+#include <vector>
 
 namespace pipeline {
 
@@ -66,7 +67,7 @@ class MemoryHub final : public sim::Component {
     };
     /// A new port pair for one more client; at most 64 clients.
     ClientPort& add_client();
-    PartitionPort& partition(std::uint32_t index) { return partitions_[index]; }
+    PartitionPort& partition(std::uint32_t index) { return *partitions_[index]; }
 
     std::uint32_t partition_of(std::uint64_t address) const;
     const Stats& stats() const { return stats_; }
@@ -86,8 +87,8 @@ class MemoryHub final : public sim::Component {
     Params params_;
     Stats stats_;
     std::uint32_t interleave_;
-    std::deque<ClientPort> clients_;
-    std::deque<PartitionPort> partitions_;
+    std::vector<std::unique_ptr<ClientPort>> clients_;
+    std::vector<std::unique_ptr<PartitionPort>> partitions_;
     std::vector<std::uint32_t> next_client_; ///< per partition: first in turn
     std::uint32_t next_partition_ = 0;       ///< first in turn to answer
     std::vector<Read> reads_;

@@ -1,0 +1,212 @@
+#include "sim/check.hpp"
+#include "tests/support/scene_files.hpp"
+#include "traces/camera.hpp"
+#include "traces/pass_graph.hpp"
+#include "traces/workloads.hpp"
+
+#include <gtest/gtest.h>
+
+namespace {
+
+using pipeline::Frame;
+using pipeline::Pass;
+using Names = std::vector<std::string>;
+
+// Three draws: opaque, opaque with alpha test, transparent. Normals and colours are there; the mask has no texture.
+traces::Scene three_draws() {
+    support::GltfFile file = support::triangle_file();
+    const int normals = file.add({0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3");
+    file.json["materials"] = nlohmann::json::parse(R"([{}, {"alphaMode": "MASK"}, {"alphaMode": "BLEND"}])");
+    auto primitive = file.json["meshes"][0]["primitives"][0];
+    primitive["attributes"]["NORMAL"] = normals;
+    file.json["meshes"][0]["primitives"] = nlohmann::json::array();
+    for (const int material : {0, 1, 2}) {
+        primitive["material"] = material;
+        file.json["meshes"][0]["primitives"].push_back(primitive);
+    }
+    return file.load();
+}
+
+const traces::Scene& scene() {
+    static const traces::Scene loaded = three_draws();
+    return loaded;
+}
+
+Frame frame_with(const Names& settings, const std::string& workload = "transparency") {
+    traces::WorkloadOptions options;
+    for (const std::string& setting : settings) options.set(setting);
+    return traces::build_frame(scene(), traces::make_view(scene(), "auto", 64, 64), workload, options);
+}
+
+Names pass_names(const Frame& frame) {
+    Names names;
+    for (const Pass& pass : frame.passes) names.push_back(pass.name);
+    return names;
+}
+
+Names left_out(const Frame& frame) {
+    Names list;
+    for (const auto& item : frame.left_out) list.push_back(item.unit + ": " + item.reason);
+    return list;
+}
+
+std::string error_of(const Names& settings, const std::string& workload = "transparency") {
+    try {
+        frame_with(settings, workload);
+    } catch (const sim::InputError& error) {
+        return error.what();
+    }
+    return {};
+}
+
+Frame empty_frame() {
+    Frame frame;
+    frame.resources = scene().resources;
+    frame.draws = scene().draws;
+    return frame;
+}
+
+TEST(PassGraph, PassesNobodyReadsAreCulled) {
+    traces::PassGraph graph(empty_frame());
+    graph.add_clear("clear", {"depth", "colour"});
+    graph.add_draw("shadow", {}, {"depth"}, {0});
+    graph.add_clear("clear again", {"depth"});
+    graph.add_draw("picture", {"depth"}, {"depth", "colour"}, {0, 1});
+    graph.add_draw("afterwards", {"depth"}, {"depth"}, {2});
+    graph.output("colour");
+    const Frame frame = graph.lower();
+    EXPECT_EQ(pass_names(frame), (Names{"clear", "clear again", "picture"}));
+    EXPECT_EQ(frame.passes[0].writes, Names{"colour"});
+    EXPECT_EQ(frame.left_out[0].unit, "pass shadow");
+    EXPECT_EQ(frame.left_out[0].reason, "nobody reads depth");
+    EXPECT_EQ(frame.left_out[1].unit, "pass afterwards");
+}
+
+TEST(PassGraph, ChainsOfReadersKeepTheirPasses) {
+    traces::PassGraph graph(empty_frame());
+    graph.add_draw("first", {}, {"depth"}, {0});
+    graph.add_draw("second", {"depth"}, {"colour"}, {1});
+    graph.add_resolve("last", {"colour"}, {"picture"});
+    graph.output("picture");
+    const Frame frame = graph.lower();
+    EXPECT_EQ(pass_names(frame), (Names{"first", "second", "last"}));
+    EXPECT_TRUE(frame.passes[1].depth.test);
+    EXPECT_FALSE(frame.passes[1].depth.write);
+    EXPECT_TRUE(frame.needs.early_depth);
+}
+
+TEST(PassGraph, PassesWithoutDrawsAreCulled) {
+    traces::PassGraph graph(empty_frame());
+    graph.add_draw("nothing", {}, {"colour"}, {});
+    graph.add_draw("something", {}, {"colour"}, {0});
+    graph.output("colour");
+    const Frame frame = graph.lower();
+    EXPECT_EQ(pass_names(frame), Names{"something"});
+    EXPECT_EQ(frame.left_out[0].unit, "pass nothing");
+    EXPECT_EQ(frame.left_out[0].reason, "it draws nothing");
+}
+
+TEST(PassGraph, WritesNobodyReadsAreDropped) {
+    traces::PassGraph graph(empty_frame());
+    graph.add_draw("both", {}, {"depth", "colour"}, {0});
+    graph.output("depth");
+    const Frame frame = graph.lower();
+    EXPECT_FALSE(frame.passes[0].colour);
+    EXPECT_FALSE(frame.needs.colours);
+    EXPECT_FALSE(frame.needs.normals);
+    EXPECT_EQ(frame.left_out[0].unit, "colour of pass both");
+}
+
+TEST(Workloads, TransparencyDrawsEverythingIntoTheKBuffer) {
+    const Frame frame = frame_with({});
+    EXPECT_EQ(pass_names(frame), (Names{"clear k-buffer", "geometry", "resolve"}));
+    EXPECT_EQ(frame.passes[1].draws, (std::vector<std::uint32_t>{0, 1, 2}));
+    EXPECT_TRUE(frame.passes[1].kbuffer);
+    EXPECT_FALSE(frame.passes[1].depth.test);
+    EXPECT_TRUE(frame.passes[1].both_faces);
+    ASSERT_NE(frame.program, nullptr);
+    EXPECT_EQ(frame.program->k(), 4U);
+    EXPECT_EQ(frame.program->bytes_per_pixel(), 64U);
+    EXPECT_EQ(frame.workload, "transparency");
+    EXPECT_EQ(left_out(frame),
+              (Names{"pass opaque: every draw is transparent by choice", "index buffer: no drawn geometry has indices",
+                     "vertex colours: no drawn geometry has them",
+                     "texture coordinates: no drawn material has a texture and coordinates for it",
+                     "textures: no drawn material has a texture and coordinates for it",
+                     "depth surface: no pass tests or writes depth",
+                     "early depth test: no pass tests a depth surface that it does not write",
+                     "colour surface: no pass writes it"}));
+}
+
+TEST(Workloads, DepthsAloneNeedNoColours) {
+    const Frame frame = frame_with({"entry=z", "k=16"});
+    EXPECT_EQ(frame.program->bytes_per_pixel(), 64U);
+    EXPECT_FALSE(frame.needs.colours);
+    EXPECT_FALSE(frame.needs.normals);
+    EXPECT_TRUE(frame.needs.alpha_test);
+    const Names list = left_out(frame);
+    EXPECT_NE(std::find(list.begin(), list.end(), "normals: no pass reads colours"), list.end());
+    EXPECT_NE(std::find(list.begin(), list.end(), "colours: no pass reads colours"), list.end());
+}
+
+TEST(Workloads, TransparentMaterialsLieBehindOpaqueOnes) {
+    const Frame frame = frame_with({"transparent=materials"});
+    EXPECT_EQ(pass_names(frame), (Names{"clear", "opaque", "clear k-buffer", "geometry", "resolve"}));
+    EXPECT_EQ(frame.passes[1].draws, (std::vector<std::uint32_t>{0, 1}));
+    EXPECT_TRUE(frame.passes[1].depth.test && frame.passes[1].depth.write && frame.passes[1].colour);
+    EXPECT_EQ(frame.passes[3].draws, (std::vector<std::uint32_t>{2}));
+    EXPECT_TRUE(frame.passes[3].depth.test && frame.passes[3].kbuffer);
+    EXPECT_FALSE(frame.passes[3].depth.write);
+    EXPECT_TRUE(frame.needs.depth && frame.needs.early_depth && frame.needs.colour_surface && frame.needs.kbuffer);
+}
+
+TEST(Workloads, OpaqueColoursAreNotWrittenWhenLayersAreDepths) {
+    const Frame frame = frame_with({"transparent=materials", "entry=z"});
+    EXPECT_FALSE(frame.passes[1].colour);
+    EXPECT_FALSE(frame.needs.colour_surface);
+    EXPECT_NE(std::find(left_out(frame).begin(), left_out(frame).end(), "colour of pass opaque: nobody reads it"),
+              left_out(frame).end());
+}
+
+TEST(Workloads, SceneWithoutTransparentMaterialsHasNoKBuffer) {
+    traces::Scene opaque = scene();
+    opaque.draws.pop_back();
+    traces::WorkloadOptions options;
+    options.set("transparent=materials");
+    const Frame frame = traces::build_frame(opaque, traces::make_view(opaque, "auto", 8, 8), "transparency", options);
+    EXPECT_EQ(pass_names(frame), (Names{"clear", "opaque", "resolve"}));
+    EXPECT_EQ(frame.program, nullptr);
+    EXPECT_EQ(left_out(frame)[0], "pass geometry: no draw has a transparent material");
+}
+
+TEST(Workloads, OpaqueIsOnePassWithDepth) {
+    const Frame frame = frame_with({"depth_format=d16"}, "opaque");
+    EXPECT_EQ(pass_names(frame), (Names{"clear", "opaque"}));
+    EXPECT_EQ(frame.depth_format, pipeline::DepthFormat::d16);
+    EXPECT_EQ(frame.program, nullptr);
+    EXPECT_TRUE(frame.needs.depth && frame.needs.colour_surface && frame.needs.normals);
+}
+
+TEST(Workloads, OptionsAreCheckedByName) {
+    EXPECT_EQ(error_of({"k=65"}), "workload transparency: k: expected integer 1 to 64, got 65");
+    EXPECT_EQ(error_of({"K=4"}), "workload transparency: unknown key 'K'");
+    EXPECT_EQ(error_of({"opacty=0.5"}), "workload transparency: unknown key 'opacty'; did you mean 'opacity'?");
+    EXPECT_EQ(error_of({"entry=rgb"}),
+              "workload transparency: entry: expected one of rgbz | z, got \"rgb\"; did you mean 'rgbz'?");
+    EXPECT_EQ(error_of({"opacity=1.5"}), "workload transparency: opacity: expected number 0 to 1, got 1.5");
+    EXPECT_EQ(error_of({"k"}), "workload: expected KEY=VALUE, got 'k'");
+    EXPECT_EQ(error_of({"k=1", "k=2"}), "workload: 'k' is set twice");
+    const std::string unknown = error_of({}, "transparent");
+    EXPECT_TRUE(unknown.starts_with("workload: expected one of transparency, ")) << unknown;
+    EXPECT_TRUE(unknown.ends_with("got 'transparent'; did you mean 'transparency'?")) << unknown;
+}
+
+TEST(Workloads, EveryOneOfTheTableBuildsAFrame) {
+    for (const traces::Workload& workload : traces::workloads()) {
+        EXPECT_FALSE(workload.summary.empty());
+        EXPECT_FALSE(workload.parameters.empty());
+        EXPECT_FALSE(frame_with({}, workload.id).passes.empty());
+    }
+}
+
+} // namespace

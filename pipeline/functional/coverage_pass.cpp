@@ -1,11 +1,11 @@
 // The first two passes of the front end: vertices to the screen, primitives to quads.
 #include "pipeline/functional/front_end_passes.hpp"
+#include "pipeline/functional/lanes.hpp"
 #include "pipeline/functional/parallel.hpp"
 #include "pipeline/functional/raster_triangle.hpp"
 #include "sim/check.hpp"
 
 #include <atomic>
-#include <bit>
 #include <limits>
 
 namespace pipeline {
@@ -63,7 +63,7 @@ class Coverage {
         const std::uint32_t tiles = for_each_quad(raster, [&](std::int32_t x, std::int32_t y, unsigned mask) {
             output_.quads.push_back({static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y), number,
                                      static_cast<std::uint8_t>(mask), 0, 0});
-            output_.fragments += static_cast<unsigned>(std::popcount(mask));
+            output_.fragments += pixels_in(mask);
         });
         output_.triangles.push_back({range_.draw, primitive, static_cast<QuadId>(first),
                                      static_cast<std::uint32_t>(output_.quads.size() - first), tiles});

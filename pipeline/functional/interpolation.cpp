@@ -27,6 +27,31 @@ double signed_area(const Position& a, const Position& b, const Position& c) {
     return (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
 }
 
+/// A corner's weight times the common factor at each pixel.
+using Shares = std::array<double, 4>;
+
+/// Pixels that are extrapolated beyond the eye plane, or near it, get the shares of the first covered pixel.
+void replace_unusable(std::array<Shares, 3>& shares, unsigned covered) {
+    const auto first = static_cast<std::size_t>(std::countr_zero(covered));
+    for (std::size_t pixel = 0; pixel < 4; ++pixel) {
+        if (((covered >> pixel) & 1U) != 0) continue;
+        const double a = shares[0][pixel], b = shares[1][pixel], c = shares[2][pixel];
+        const double largest = std::max({std::fabs(a), std::fabs(b), std::fabs(c)});
+        if (largest < (a + b + c) * largest_weight) continue;
+        for (Shares& corner : shares) corner[pixel] = corner[first];
+    }
+}
+
+CornerWeights normalized(Shares s0, Shares s1, Shares s2) {
+    CornerWeights weights;
+    for (std::size_t pixel = 0; pixel < 4; ++pixel) {
+        const double inverse = 1.0 / (s0[pixel] + s1[pixel] + s2[pixel]);
+        weights.of1[pixel] = static_cast<float>(s1[pixel] * inverse);
+        weights.of2[pixel] = static_cast<float>(s2[pixel] * inverse);
+    }
+    return weights;
+}
+
 } // namespace
 
 DepthPlane::DepthPlane(const RasterTriangle& raster, const std::array<ScreenVertex, 3>& corners) {
@@ -78,33 +103,14 @@ AttributePlanes::AttributePlanes(const RasterTriangle& raster, const std::array<
 
 CornerWeights AttributePlanes::at(std::int32_t x, std::int32_t y, unsigned covered) const {
     // Integers below 2^53 until they are scaled: exact, so that covered pixels have no negative weight.
-    std::array<std::array<double, 4>, 3> shares;
+    std::array<Shares, 3> shares;
     for (std::size_t i = 0; i < 3; ++i) {
         const double here = constant_[i] + step_x_[i] * x + step_y_[i] * y;
         shares[i] = {here * scale_[i], (here + step_x_[i]) * scale_[i], (here + step_y_[i]) * scale_[i],
                      (here + (step_x_[i] + step_y_[i])) * scale_[i]};
     }
-    CornerWeights weights;
-    unsigned bad = 0;
-    for (std::size_t lane = 0; lane < 4; ++lane) {
-        const double sum = shares[0][lane] + shares[1][lane] + shares[2][lane];
-        const double largest =
-            std::max({std::fabs(shares[0][lane]), std::fabs(shares[1][lane]), std::fabs(shares[2][lane])});
-        const bool good = largest < sum * largest_weight;
-        const double inverse = good ? 1.0 / sum : 0.0;
-        bad |= (good ? 0U : 1U) << lane;
-        weights.of1[lane] = static_cast<float>(shares[1][lane] * inverse);
-        weights.of2[lane] = static_cast<float>(shares[2][lane] * inverse);
-    }
-    bad &= ~covered;
-    if (bad == 0) return weights;
-    const auto first = static_cast<std::size_t>(std::countr_zero(covered));
-    for (std::size_t lane = 0; lane < 4; ++lane) {
-        if (((bad >> lane) & 1U) == 0) continue;
-        weights.of1[lane] = weights.of1[first];
-        weights.of2[lane] = weights.of2[first];
-    }
-    return weights;
+    if (covered != 15U) replace_unusable(shares, covered);
+    return normalized(shares[0], shares[1], shares[2]);
 }
 
 } // namespace pipeline

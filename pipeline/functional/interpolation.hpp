@@ -8,15 +8,13 @@
 #pragma once
 
 #include "pipeline/functional/cull_and_clip.hpp"
+#include "pipeline/functional/lanes.hpp"
 #include "pipeline/functional/raster_triangle.hpp"
 
 #include <array>
 #include <cstdint>
 
 namespace pipeline {
-
-/// One number for each pixel of a quad.
-using Lanes = std::array<float, 4>;
 
 /// Window depth over a triangle.
 class DepthPlane {
@@ -39,8 +37,9 @@ struct CornerWeights {
     /// The attribute that has these values at the corners; exactly that value where all three are equal.
     Lanes interpolate(float at0, float at1, float at2) const {
         const float to1 = at1 - at0, to2 = at2 - at0;
+        const Lanes share1 = of1, share2 = of2; // copies: the compiler need not fear that the result overlaps them
         Lanes result;
-        for (std::size_t lane = 0; lane < 4; ++lane) result[lane] = at0 + (of1[lane] * to1 + of2[lane] * to2);
+        for (std::size_t i = 0; i < 4; ++i) result[i] = at0 + (share1[i] * to1 + share2[i] * to2);
         return result;
     }
 };

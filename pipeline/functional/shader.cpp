@@ -104,30 +104,26 @@ ShaderTriangle FragmentShader::triangle(const std::array<std::uint32_t, 3>& vert
 
 Lanes FragmentShader::light(const ShaderTriangle& triangle, const CornerWeights& weights) const {
     const auto& c = triangle.corners;
-    const auto x = weights.interpolate(c[0].normal.x, c[1].normal.x, c[2].normal.x);
-    const auto y = weights.interpolate(c[0].normal.y, c[1].normal.y, c[2].normal.y);
-    const auto z = weights.interpolate(c[0].normal.z, c[1].normal.z, c[2].normal.z);
+    const Lanes x = weights.interpolate(c[0].normal.x, c[1].normal.x, c[2].normal.x);
+    const Lanes y = weights.interpolate(c[0].normal.y, c[1].normal.y, c[2].normal.y);
+    const Lanes z = weights.interpolate(c[0].normal.z, c[1].normal.z, c[2].normal.z);
     Lanes result;
-    for (std::size_t lane = 0; lane < 4; ++lane) {
-        const float squared = x[lane] * x[lane] + y[lane] * y[lane] + z[lane] * z[lane];
-        // A normal of no length, or too short to be squared, lights fully.
-        result[lane] = squared > 1e-30F ? lambert(std::min(std::fabs(z[lane]) / std::sqrt(squared), 1.0F)) : 1.0F;
-    }
+    // The addend is lost in the square of any real normal; it keeps one of no length from dividing by zero.
+    for (std::size_t i = 0; i < 4; ++i)
+        result[i] = std::fabs(z[i]) / std::sqrt(x[i] * x[i] + y[i] * y[i] + z[i] * z[i] + 1e-30F);
+    for (float& value : result) value = lambert(std::min(value, 1.0F));
     return result;
 }
 
 void FragmentShader::texture(const ShaderTriangle& triangle, const CornerWeights& weights, unsigned covered,
                              Output& output) const {
     const auto& c = triangle.corners;
-    const auto u = weights.interpolate(c[0].texcoord.x, c[1].texcoord.x, c[2].texcoord.x);
-    const auto v = weights.interpolate(c[0].texcoord.y, c[1].texcoord.y, c[2].texcoord.y);
-    std::array<glm::vec2, 4> coordinates;
-    for (std::size_t lane = 0; lane < 4; ++lane) coordinates[lane] = {u[lane], v[lane]};
-    const float level_of_detail = sampler_->level_of_detail(coordinates);
-    for (std::size_t lane = 0; lane < 4; ++lane)
-        if (((covered >> lane) & 1U) != 0) output.colours[lane] *= sampler_->sample(coordinates[lane], level_of_detail);
-    output.texture_line =
-        sampler_->line(coordinates[static_cast<std::size_t>(std::countr_zero(covered))], level_of_detail);
+    const QuadTexcoords coordinates{weights.interpolate(c[0].texcoord.x, c[1].texcoord.x, c[2].texcoord.x),
+                                    weights.interpolate(c[0].texcoord.y, c[1].texcoord.y, c[2].texcoord.y)};
+    const TextureFootprint footprint = sampler_->footprint(sampler_->level_of_detail(coordinates));
+    std::array<glm::vec4, 4> texels{};
+    output.texture_line = sampler_->sample(coordinates, footprint, covered, texels);
+    for (std::size_t lane = 0; lane < 4; ++lane) output.colours[lane] *= texels[lane];
 }
 
 FragmentShader::Output FragmentShader::shade(const ShaderTriangle& triangle, const CornerWeights& weights,
@@ -148,13 +144,12 @@ FragmentShader::Output FragmentShader::shade(const ShaderTriangle& triangle, con
     if (normals_) lights = light(triangle, weights);
     for (std::size_t lane = 0; lane < 4; ++lane) {
         glm::vec4& colour = output.colours[lane];
+        const unsigned bit = 1U << lane;
         // glTF 2.0, section 3.9.4: a fragment whose alpha equals the cutoff is drawn.
-        if (discards_ && !(colour.a >= alpha_cutoff_)) output.alive &= static_cast<std::uint8_t>(~(1U << lane));
-        if (((covered >> lane) & 1U) == 0) {
-            colour = glm::vec4(0.0F);
-        } else {
-            colour = glm::vec4(glm::vec3(colour) * lights[lane], keeps_alpha_ ? colour.a : 1.0F);
-        }
+        if (discards_ && !(colour.a >= alpha_cutoff_)) output.alive &= static_cast<std::uint8_t>(~bit);
+        const float light = (covered & bit) != 0 ? lights[lane] : 0.0F;
+        const float alpha = (covered & bit) == 0 ? 0.0F : keeps_alpha_ ? colour.a : 1.0F;
+        colour = glm::vec4(colour.r * light, colour.g * light, colour.b * light, alpha);
     }
     return output;
 }

@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <bit>
 #include <optional>
 
 namespace pipeline {
@@ -47,7 +46,7 @@ class Shading {
             Quad& quad = stream_.quads[i];
             if (i == begin || quad.triangle != current_triangle_) enter_triangle(quad.triangle);
             shade(i, quad);
-            discarded += static_cast<unsigned>(std::popcount(static_cast<unsigned>(quad.covered ^ quad.alive)));
+            discarded += pixels_in(static_cast<unsigned>(quad.covered ^ quad.alive));
         }
         return discarded;
     }

@@ -3,141 +3,165 @@
 #include "pipeline/functional/number_formats.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace pipeline {
 
 namespace {
 
-/// Largest integer not above `value`, |value| < 2^31.
-std::int32_t floor_of(float value) {
-    const auto truncated = static_cast<std::int32_t>(value);
-    return truncated - (value < static_cast<float>(truncated) ? 1 : 0);
+using Texels = std::array<std::int32_t, 4>; ///< indices along one axis
+
+// The functions below take values, not references, and have no branches, so that compilers turn their loops over four
+// pixels into vector code.
+
+constexpr std::int32_t is_negative(float value) {
+    return static_cast<std::int32_t>(std::bit_cast<std::uint32_t>(value) >> 31U);
 }
 
-/// value - floor(value), in [0,1]; 1 only for a negative value that rounds up to it.
+/// value - floor(value), in [0,1]; 1 only for -0 and for negative values that round up to it.
 float fraction(float value) {
-    if (!(std::fabs(value) < 0x1p23F)) return 0.0F; // has no fraction bits
-    return value - static_cast<float>(floor_of(value));
+    // Floats from 2^23 on have no fraction bits, and conversion to an integer might overflow: they count as 0.
+    const auto bits = std::bit_cast<std::int32_t>(value);
+    const std::int32_t is_small = ((bits & 0x7FFFFFFF) - 0x4B000000) >> 31;
+    const auto small = std::bit_cast<float>(bits & is_small);
+    const float rest = small - static_cast<float>(static_cast<std::int32_t>(small));
+    return rest + static_cast<float>(is_negative(rest));
 }
 
-/// Maps a coordinate to [0,1].
-float wrapped(Wrap wrap, float value) {
-    switch (wrap) {
-    case Wrap::clamp:
-        return std::clamp(value, 0.0F, 1.0F);
-    case Wrap::mirror: {
-        const float phase = 2.0F * fraction(value * 0.5F);
-        return phase > 1.0F ? 2.0F - phase : phase;
-    }
-    case Wrap::repeat:
-        break;
-    }
-    return fraction(value);
-}
-
-/// Brings a texel index that is at most one texel outside back in.
-std::int32_t wrapped_texel(Wrap wrap, std::int32_t index, std::int32_t size) {
+/// Maps coordinates to [0,1].
+Lanes wrapped(Wrap wrap, Lanes values) {
+    Lanes result;
     if (wrap == Wrap::repeat) {
-        if (index < 0) return index + size;
-        return index >= size ? index - size : index;
+        for (std::size_t i = 0; i < 4; ++i) result[i] = fraction(values[i]);
+    } else if (wrap == Wrap::clamp) {
+        for (std::size_t i = 0; i < 4; ++i) result[i] = std::clamp(values[i], 0.0F, 1.0F);
+    } else {
+        // Twice the distance to the nearest even number.
+        for (std::size_t i = 0; i < 4; ++i) result[i] = 1.0F - std::fabs(2.0F * fraction(values[i] * 0.5F) - 1.0F);
     }
-    return std::clamp(index, 0, size - 1); // a mirror repeats its last texel
+    return result;
 }
 
-std::int32_t nearest_texel(Wrap wrap, float coordinate, std::uint32_t size) {
-    const std::int32_t index = floor_of(coordinate * static_cast<float>(size));
-    return wrapped_texel(wrap, index, static_cast<std::int32_t>(size));
+/// What a filter reads along one axis: two texels and the share of the second, or one texel and its right neighbour.
+struct AxisReads {
+    Texels low, high;
+    Lanes share;
+};
+
+/// `before` and `after` replace the indices -1 and size.
+std::int32_t inside(std::int32_t index, std::int32_t size, std::int32_t before, std::int32_t after) {
+    const std::int32_t is_before = index >> 31, is_after = (size - 1 - index) >> 31;
+    return (index & ~(is_before | is_after)) | (before & is_before) | (after & is_after);
+}
+
+AxisReads reads_along(Wrap wrap, bool linear, Lanes wrapped, std::uint32_t texels) {
+    const auto size = static_cast<std::int32_t>(texels);
+    const std::int32_t before = wrap == Wrap::repeat ? size - 1 : 0; // a mirror repeats its last texel
+    const std::int32_t after = wrap == Wrap::repeat ? 0 : size - 1;
+    const float offset = linear ? 0.5F : 0.0F;
+    AxisReads reads;
+    for (std::size_t i = 0; i < 4; ++i) {
+        const float place = wrapped[i] * static_cast<float>(size) - offset;
+        const auto truncated = static_cast<std::int32_t>(place);
+        const float rest = place - static_cast<float>(truncated);
+        const std::int32_t floor = truncated - is_negative(rest);
+        reads.low[i] = inside(floor, size, before, after);
+        reads.high[i] = inside(floor + 1, size, before, after);
+        reads.share[i] = rest + static_cast<float>(is_negative(rest));
+    }
+    return reads;
+}
+
+/// The texel that the coordinate itself lies in.
+std::uint64_t nearest(const AxisReads& reads, bool linear, std::size_t pixel) {
+    return static_cast<std::uint64_t>(linear && reads.share[pixel] >= 0.5F ? reads.high[pixel] : reads.low[pixel]);
 }
 
 /// Exactly `a` where both are equal: an image of one colour stays one, whatever the weights.
-glm::vec4 between(const glm::vec4& a, const glm::vec4& b, float t) { return a + (b - a) * t; }
+Lanes between(Lanes a, Lanes b, float t) {
+    Lanes result;
+    for (std::size_t i = 0; i < 4; ++i) result[i] = a[i] + (b[i] - a[i]) * t;
+    return result;
+}
+
+/// Number of the 64-byte line of a texel.
+std::uint32_t line_of(const Texture::Level& level, std::uint64_t column, std::uint64_t row) {
+    const std::uint64_t tiles_in_row = (std::uint64_t{level.width} + 3) / 4;
+    return static_cast<std::uint32_t>(level.address / 64 + row / 4 * tiles_in_row + column / 4);
+}
 
 } // namespace
 
 TextureSampler::TextureSampler(const Texture& texture)
     : texture_(texture),
-      decode_(texture.srgb ? srgb_decode_table() : unorm8_decode_table()),
-      alpha_(unorm8_decode_table()) {}
+      colour_((texture.srgb ? srgb_decode_table() : unorm8_decode_table()).data()),
+      alpha_(unorm8_decode_table().data()) {}
 
-float TextureSampler::level_of_detail(const std::array<glm::vec2, 4>& coordinates) const {
+float TextureSampler::level_of_detail(const QuadTexcoords& coordinates) const {
     const auto width = static_cast<double>(texture_.levels.front().width);
     const auto height = static_cast<double>(texture_.levels.front().height);
-    const auto squared = [&](const glm::vec2& to) {
-        const double du = (static_cast<double>(to.x) - static_cast<double>(coordinates[0].x)) * width;
-        const double dv = (static_cast<double>(to.y) - static_cast<double>(coordinates[0].y)) * height;
+    const auto squared_distance_to = [&](std::size_t pixel) {
+        const double du = (static_cast<double>(coordinates.u[pixel]) - static_cast<double>(coordinates.u[0])) * width;
+        const double dv = (static_cast<double>(coordinates.v[pixel]) - static_cast<double>(coordinates.v[0])) * height;
         return du * du + dv * dv;
     };
-    const double texels = std::max(squared(coordinates[1]), squared(coordinates[2]));
+    const double texels = std::max(squared_distance_to(1), squared_distance_to(2));
     if (!(texels > 1.0)) return 0.0F;
     const auto last = static_cast<double>(texture_.levels.size() - 1);
     // Above 0 in any case: the minification filter applies however small the excess.
     return std::max(static_cast<float>(std::min(0.5 * std::log2(texels), last)), 0x1p-24F);
 }
 
-TextureSampler::Footprint TextureSampler::footprint(float level_of_detail) const {
+TextureFootprint TextureSampler::footprint(float level_of_detail) const {
     if (level_of_detail <= 0.0F) return {0, 0.0F, texture_.mag_filter != Filter::nearest};
-    const std::size_t last = texture_.levels.size() - 1;
+    const auto last = static_cast<std::uint32_t>(texture_.levels.size() - 1);
     const Filter filter = texture_.min_filter;
     const bool linear =
         filter == Filter::linear || filter == Filter::linear_mip_nearest || filter == Filter::linear_mip_linear;
     if (filter == Filter::nearest || filter == Filter::linear) return {0, 0.0F, linear};
-    if (filter == Filter::nearest_mip_nearest || filter == Filter::linear_mip_nearest) {
-        const auto level = static_cast<std::size_t>(std::ceil(level_of_detail + 0.5F) - 1.0F); // halves go down
-        return {std::min(level, last), 0.0F, linear};
-    }
-    const float floor = std::floor(level_of_detail);
-    const auto level = static_cast<std::size_t>(floor);
-    if (level >= last) return {last, 0.0F, linear};
-    return {level, level_of_detail - floor, linear};
+    const auto floor = static_cast<std::uint32_t>(level_of_detail);
+    const float above = level_of_detail - static_cast<float>(floor);
+    if (filter == Filter::nearest_mip_nearest || filter == Filter::linear_mip_nearest)
+        return {std::min(above > 0.5F ? floor + 1 : floor, last), 0.0F, linear}; // halves go down
+    if (floor >= last) return {last, 0.0F, linear};
+    return {floor, above, linear};
 }
 
-glm::vec4 TextureSampler::texel(const Texture::Level& level, std::int32_t x, std::int32_t y) const {
-    const std::uint8_t* code =
-        level.rgba.data() + (static_cast<std::size_t>(y) * level.width + static_cast<std::size_t>(x)) * 4;
-    return {decode_[code[0]], decode_[code[1]], decode_[code[2]], alpha_[code[3]]};
-}
-
-glm::vec4 TextureSampler::nearest(const Texture::Level& level, const glm::vec2& wrapped) const {
-    return texel(level, nearest_texel(texture_.wrap_u, wrapped.x, level.width),
-                 nearest_texel(texture_.wrap_v, wrapped.y, level.height));
-}
-
-glm::vec4 TextureSampler::bilinear(const Texture::Level& level, const glm::vec2& wrapped) const {
-    const auto width = static_cast<std::int32_t>(level.width);
-    const auto height = static_cast<std::int32_t>(level.height);
-    const float u = wrapped.x * static_cast<float>(width) - 0.5F;
-    const float v = wrapped.y * static_cast<float>(height) - 0.5F;
-    const std::int32_t x = floor_of(u), y = floor_of(v);
-    const float right = u - static_cast<float>(x), below = v - static_cast<float>(y);
-    const std::int32_t x0 = wrapped_texel(texture_.wrap_u, x, width), x1 = wrapped_texel(texture_.wrap_u, x + 1, width);
-    const std::int32_t y0 = wrapped_texel(texture_.wrap_v, y, height);
-    const std::int32_t y1 = wrapped_texel(texture_.wrap_v, y + 1, height);
-    const glm::vec4 top = between(texel(level, x0, y0), texel(level, x1, y0), right);
-    const glm::vec4 bottom = between(texel(level, x0, y1), texel(level, x1, y1), right);
-    return between(top, bottom, below);
-}
-
-glm::vec4 TextureSampler::filtered(std::size_t level, bool linear, const glm::vec2& wrapped) const {
+std::uint32_t TextureSampler::filter(std::uint32_t level, bool linear, const QuadTexcoords& wrapped, unsigned pixels,
+                                     std::array<Lanes, 4>& colours) const {
     const Texture::Level& image = texture_.levels[level];
-    return linear ? bilinear(image, wrapped) : nearest(image, wrapped);
+    const AxisReads x = reads_along(texture_.wrap_u, linear, wrapped.u, image.width);
+    const AxisReads y = reads_along(texture_.wrap_v, linear, wrapped.v, image.height);
+    for (std::size_t i = 0; i < 4; ++i) {
+        if (((pixels >> i) & 1U) == 0) continue;
+        const auto at = [&](std::int32_t column, std::int32_t row) {
+            const std::size_t index = static_cast<std::size_t>(row) * image.width + static_cast<std::size_t>(column);
+            return texel(image.rgba.data() + index * 4);
+        };
+        colours[i] = at(x.low[i], y.low[i]);
+        if (!linear) continue;
+        const Lanes top = between(colours[i], at(x.high[i], y.low[i]), x.share[i]);
+        const Lanes bottom = between(at(x.low[i], y.high[i]), at(x.high[i], y.high[i]), x.share[i]);
+        colours[i] = between(top, bottom, y.share[i]);
+    }
+    const auto first = static_cast<std::size_t>(std::countr_zero(pixels));
+    return line_of(image, nearest(x, linear, first), nearest(y, linear, first));
 }
 
-glm::vec4 TextureSampler::sample(const glm::vec2& coordinates, float level_of_detail) const {
-    const Footprint reads = footprint(level_of_detail);
-    const glm::vec2 place(wrapped(texture_.wrap_u, coordinates.x), wrapped(texture_.wrap_v, coordinates.y));
-    const glm::vec4 fine = filtered(reads.level, reads.linear, place);
-    if (reads.blend == 0.0F) return fine;
-    return between(fine, filtered(reads.level + 1, reads.linear, place), reads.blend);
-}
-
-std::uint32_t TextureSampler::line(const glm::vec2& coordinates, float level_of_detail) const {
-    const Texture::Level& level = texture_.levels[footprint(level_of_detail).level];
-    const std::int32_t x = nearest_texel(texture_.wrap_u, wrapped(texture_.wrap_u, coordinates.x), level.width);
-    const std::int32_t y = nearest_texel(texture_.wrap_v, wrapped(texture_.wrap_v, coordinates.y), level.height);
-    const std::uint64_t tiles_in_row = (std::uint64_t{level.width} + 3) / 4;
-    const std::uint64_t tile = static_cast<std::uint64_t>(y / 4) * tiles_in_row + static_cast<std::uint64_t>(x / 4);
-    return static_cast<std::uint32_t>(level.address / 64 + tile);
+std::uint32_t TextureSampler::sample(const QuadTexcoords& coordinates, const TextureFootprint& footprint,
+                                     unsigned pixels, std::array<glm::vec4, 4>& colours) const {
+    const QuadTexcoords place{wrapped(texture_.wrap_u, coordinates.u), wrapped(texture_.wrap_v, coordinates.v)};
+    std::array<Lanes, 4> fine, coarse;
+    const std::uint32_t line = filter(footprint.level, footprint.linear, place, pixels, fine);
+    const bool two_levels = footprint.blend != 0.0F;
+    if (two_levels) filter(footprint.level + 1, footprint.linear, place, pixels, coarse);
+    for (std::size_t i = 0; i < 4; ++i) {
+        if (((pixels >> i) & 1U) == 0) continue;
+        const Lanes c = two_levels ? between(fine[i], coarse[i], footprint.blend) : fine[i];
+        colours[i] = glm::vec4(c[0], c[1], c[2], c[3]);
+    }
+    return line;
 }
 
 } // namespace pipeline

@@ -5,45 +5,56 @@
 #pragma once
 
 #include "pipeline/draw.hpp"
+#include "pipeline/functional/lanes.hpp"
 
 #include <array>
 #include <cstdint>
-#include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
 
 namespace pipeline {
+
+/// Texture coordinates at the four pixels of a quad, also those that are not covered. Finite.
+struct QuadTexcoords {
+    Lanes u{}, v{};
+};
+
+/// Which levels of a texture a quad reads, and how.
+struct TextureFootprint {
+    std::uint32_t level = 0; ///< the finest one
+    float blend = 0;         ///< share of the next level; 0 when only one is read
+    bool linear = false;
+};
 
 class TextureSampler {
   public:
     /// `texture` has at least one level and outlives the sampler.
     explicit TextureSampler(const Texture& texture);
 
-    /// log2 of the longer of the quad's two footprints in texels of level 0; from the coordinates at its four pixels
-    /// (finite; pixels that are not covered count). 0 where the texture is magnified, at most the last level.
-    float level_of_detail(const std::array<glm::vec2, 4>& coordinates) const;
+    /// log2 of the longer of the quad's two footprints in texels of level 0; 0 where the texture is magnified, at most
+    /// the last level.
+    float level_of_detail(const QuadTexcoords& coordinates) const;
 
-    /// The filtered colour: linear light, alpha as stored.
-    glm::vec4 sample(const glm::vec2& coordinates, float level_of_detail) const;
+    /// Magnification filter at level of detail 0, minification filter above.
+    TextureFootprint footprint(float level_of_detail) const;
 
-    /// Number of the 64-byte line (a tile of 4x4 texels) that holds the texel at `coordinates` in the finest level that
-    /// sample() reads: its address in GPU memory / 64.
-    std::uint32_t line(const glm::vec2& coordinates, float level_of_detail) const;
+    /// The filtered colours, in linear light and alpha as stored, of the pixels in the mask (not 0); others are not
+    /// touched.
+    ///
+    /// Returns the number of the 64-byte line (a tile of 4x4 texels) that holds the texel at the first pixel's
+    /// coordinates in the finest level read: its address in GPU memory / 64.
+    std::uint32_t sample(const QuadTexcoords& coordinates, const TextureFootprint& footprint, unsigned pixels,
+                         std::array<glm::vec4, 4>& colours) const;
 
   private:
-    struct Footprint {
-        std::size_t level = 0; ///< the finest level read
-        float blend = 0;       ///< share of the next level; 0 when only one is read
-        bool linear = false;
-    };
-    Footprint footprint(float level_of_detail) const;
-    glm::vec4 texel(const Texture::Level& level, std::int32_t x, std::int32_t y) const;
-    glm::vec4 nearest(const Texture::Level& level, const glm::vec2& wrapped) const;
-    glm::vec4 bilinear(const Texture::Level& level, const glm::vec2& wrapped) const;
-    glm::vec4 filtered(std::size_t level, bool linear, const glm::vec2& wrapped) const;
+    std::uint32_t filter(std::uint32_t level, bool linear, const QuadTexcoords& wrapped, unsigned pixels,
+                         std::array<Lanes, 4>& colours) const;
+    Lanes texel(const std::uint8_t* codes) const {
+        return {colour_[codes[0]], colour_[codes[1]], colour_[codes[2]], alpha_[codes[3]]};
+    }
 
     const Texture& texture_;
-    const std::array<float, 256>& decode_; ///< of colour channels
-    const std::array<float, 256>& alpha_;
+    const float* colour_; ///< 256 decoded values of a colour channel
+    const float* alpha_;  ///< and of alpha
 };
 
 } // namespace pipeline

@@ -67,7 +67,11 @@ struct FrameKit {
         return frame.passes.back();
     }
 
-    void add_resolve() { frame.passes.push_back({"resolve", PassKind::resolve, {}, {}, {}, {}, false, false}); }
+    Pass& add_pass(const std::string& name, PassKind kind) {
+        Pass& pass = add_pass(name, std::vector<std::uint32_t>{});
+        pass.kind = kind;
+        return pass;
+    }
 
     ReferenceImage run(QuadId delay = 1, unsigned threads = 0) {
         scene.resources.place();
@@ -198,7 +202,7 @@ TEST(Reference, ClearPassesSetSurfacesBack) {
     first.depth = {true, true};
     first.colour = first.kbuffer = true;
     kit.frame.program = std::make_shared<SmallestDepths>(1, 1);
-    kit.frame.passes.push_back({"clear", PassKind::clear, {}, {"depth", "colour", "kbuffer"}, {}, {}, false, false});
+    kit.add_pass("clear", PassKind::clear).writes = {"depth", "colour", "kbuffer"};
     const ReferenceImage image = kit.run();
     EXPECT_EQ(image.depth[0], 1.0F);
     EXPECT_EQ(image.colour[1], 1.0F); // the background is white
@@ -264,7 +268,7 @@ TEST(Reference, TheResultIsTheSameForAnyNumberOfThreads) {
 
 TEST(Reference, TheNumberOfStreamsIsThatOfTheDrawPasses) {
     FrameKit kit(4, 4);
-    kit.add_pass("opaque", {kit.add_layer(0.5F, {1, 1, 1, 1})}).depth = {true, true};
+    kit.add_pass("opaque", std::vector{kit.add_layer(0.5F, {1, 1, 1, 1})}).depth = {true, true};
     kit.run();
     EXPECT_THROW(run_reference(kit.frame, {}), sim::InternalError);
 }
@@ -274,7 +278,7 @@ TEST(Composite, IsFrontToBackWithUniformOpacity) {
     const glm::vec4 near(1, 0, 0, 1), far(0, 1, 0, 1);
     const std::uint32_t back = kit.add_layer(0.75F, far), front = kit.add_layer(0.25F, near);
     kit.add_pass("peel", {back, front}).kbuffer = true;
-    kit.add_resolve();
+    kit.add_pass("resolve", PassKind::resolve);
     kit.frame.program = std::make_shared<SmallestDepths>(4, 4);
     kit.frame.opacity = 0.25F;
     kit.frame.background = glm::vec4(0, 0, 1, 1);
@@ -293,7 +297,7 @@ TEST(Composite, OpaqueSurfacesAreTheBackground) {
     opaque.depth = {true, true};
     opaque.colour = true;
     kit.add_pass("peel", {glass}).kbuffer = true;
-    kit.add_resolve();
+    kit.add_pass("resolve", PassKind::resolve);
     kit.frame.program = std::make_shared<SmallestDepths>(2, 4);
     const ReferenceImage image = kit.run();
     EXPECT_FLOAT_EQ(image.picture[0], 0.5F);

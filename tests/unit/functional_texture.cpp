@@ -10,6 +10,24 @@
 namespace pipeline {
 namespace {
 
+QuadTexcoords everywhere(const glm::vec2& coordinates) {
+    QuadTexcoords result;
+    result.u.fill(coordinates.x);
+    result.v.fill(coordinates.y);
+    return result;
+}
+
+glm::vec4 sampled(const TextureSampler& sampler, const glm::vec2& coordinates, float level_of_detail = 0.0F) {
+    std::array<glm::vec4, 4> colours;
+    sampler.sample(everywhere(coordinates), sampler.footprint(level_of_detail), 4U, colours);
+    return colours[2];
+}
+
+std::uint32_t line_at(const TextureSampler& sampler, const glm::vec2& coordinates, float level_of_detail) {
+    std::array<glm::vec4, 4> colours;
+    return sampler.sample(everywhere(coordinates), sampler.footprint(level_of_detail), 8U, colours);
+}
+
 using tests::texture_of;
 using tests::texture_of_one_colour;
 
@@ -27,7 +45,7 @@ Texture row_of_four(Wrap wrap) {
 
 glm::vec4 nearest(Wrap wrap, float u) {
     const Texture texture = row_of_four(wrap);
-    return TextureSampler(texture).sample({u, 0.5F}, 0.0F);
+    return sampled(TextureSampler(texture), {u, 0.5F}, 0.0F);
 }
 
 TEST(TextureSampling, RepeatTakesTheFraction) {
@@ -57,7 +75,7 @@ TEST(TextureSampling, CoordinatesWithoutFractionsAreHarmless) {
     for (const Wrap wrap : {Wrap::repeat, Wrap::clamp, Wrap::mirror})
         for (const float u : {1e9F, -1e9F, 1e38F, -1e38F, 0x1p23F, 0x1p24F}) {
             const Texture texture = row_of_four(wrap);
-            const glm::vec4 colour = TextureSampler(texture).sample({u, u}, 0.0F);
+            const glm::vec4 colour = sampled(TextureSampler(texture), {u, u}, 0.0F);
             EXPECT_TRUE(std::isfinite(colour.r) && colour.a == 1.0F);
         }
 }
@@ -66,13 +84,13 @@ TEST(TextureSampling, BilinearWeightsTexelsByTheirCentres) {
     Texture texture = row_of_four(Wrap::clamp);
     texture.mag_filter = Filter::linear;
     const TextureSampler sampler(texture);
-    EXPECT_EQ(sampler.sample({0.125F, 0.5F}, 0.0F), pure_red);
-    EXPECT_EQ(sampler.sample({0.25F, 0.5F}, 0.0F), glm::vec4(0.5F, 0.5F, 0, 1));
-    EXPECT_EQ(sampler.sample({0.0F, 0.5F}, 0.0F), pure_red);
+    EXPECT_EQ(sampled(sampler, {0.125F, 0.5F}, 0.0F), pure_red);
+    EXPECT_EQ(sampled(sampler, {0.25F, 0.5F}, 0.0F), glm::vec4(0.5F, 0.5F, 0, 1));
+    EXPECT_EQ(sampled(sampler, {0.0F, 0.5F}, 0.0F), pure_red);
     texture.wrap_u = Wrap::repeat;
-    EXPECT_EQ(sampler.sample({0.0F, 0.5F}, 0.0F), glm::vec4(1.0F, 0.5F, 0.5F, 1)); // white and red meet
+    EXPECT_EQ(sampled(sampler, {0.0F, 0.5F}, 0.0F), glm::vec4(1.0F, 0.5F, 0.5F, 1)); // white and red meet
     texture.wrap_u = Wrap::mirror;
-    EXPECT_EQ(sampler.sample({0.0F, 0.5F}, 0.0F), pure_red);
+    EXPECT_EQ(sampled(sampler, {0.0F, 0.5F}, 0.0F), pure_red);
 }
 
 TEST(TextureSampling, OneColourStaysThatColourUnderEveryFilter) {
@@ -84,7 +102,7 @@ TEST(TextureSampling, OneColourStaysThatColourUnderEveryFilter) {
         const TextureSampler sampler(texture);
         for (const float lod : {0.0F, 0.3F, 0.5F, 1.7F, 3.0F})
             for (const float u : {0.013F, 0.333F, 0.77F}) {
-                const glm::vec4 colour = sampler.sample({u, 1.1F - u}, lod);
+                const glm::vec4 colour = sampled(sampler, {u, 1.1F - u}, lod);
                 EXPECT_EQ(colour.r, srgb_decode_table()[0x80]);
                 EXPECT_EQ(colour.a, unorm8_to_float(0x34));
             }
@@ -94,8 +112,8 @@ TEST(TextureSampling, OneColourStaysThatColourUnderEveryFilter) {
 TEST(TextureSampling, SrgbIsDecodedBeforeFiltering) {
     Texture texture = texture_of(2, 1, {white, black});
     texture.wrap_u = Wrap::clamp;
-    EXPECT_EQ(TextureSampler(texture).sample({0.5F, 0.5F}, 0.0F).r, 0.5F); // half the light, not half the code
-    EXPECT_EQ(TextureSampler(texture).sample({0.5F, 0.5F}, 0.0F).a, 1.0F);
+    EXPECT_EQ(sampled(TextureSampler(texture), {0.5F, 0.5F}, 0.0F).r, 0.5F); // half the light, not half the code
+    EXPECT_EQ(sampled(TextureSampler(texture), {0.5F, 0.5F}, 0.0F).a, 1.0F);
 }
 
 TEST(LevelOfDetail, IsTheLogarithmOfTheLongerFootprint) {
@@ -103,7 +121,7 @@ TEST(LevelOfDetail, IsTheLogarithmOfTheLongerFootprint) {
     texture.make_mips();
     const TextureSampler sampler(texture);
     const auto lod = [&](float du_dx, float dv_dy) {
-        return sampler.level_of_detail({{{0.0F, 0.0F}, {du_dx, 0.0F}, {0.0F, dv_dy}, {du_dx, dv_dy}}});
+        return sampler.level_of_detail({{0.0F, du_dx, 0.0F, du_dx}, {0.0F, 0.0F, dv_dy, dv_dy}});
     };
     EXPECT_EQ(lod(1.0F / 64, 1.0F / 32), 0.0F);
     EXPECT_EQ(lod(0.5F / 64, 0.5F / 32), 0.0F);
@@ -117,10 +135,8 @@ TEST(LevelOfDetail, DegenerateCoordinatesMagnify) {
     Texture texture = texture_of_one_colour(64, 64, white);
     texture.make_mips();
     const TextureSampler sampler(texture);
-    const glm::vec2 same(0.3F, 0.4F);
-    EXPECT_EQ(sampler.level_of_detail({same, same, same, same}), 0.0F);
-    const glm::vec2 far(1e38F, -1e38F);
-    EXPECT_EQ(sampler.level_of_detail({same, far, -far, far}), 6.0F);
+    EXPECT_EQ(sampler.level_of_detail(everywhere({0.3F, 0.4F})), 0.0F);
+    EXPECT_EQ(sampler.level_of_detail({{0, 1e38F, -1e38F, 0}, {0, -1e38F, 1e38F, 0}}), 6.0F);
 }
 
 TEST(LevelOfDetail, FiltersPickTheirLevels) {
@@ -132,7 +148,7 @@ TEST(LevelOfDetail, FiltersPickTheirLevels) {
     const TextureSampler sampler(texture);
     const auto at = [&](Filter filter, float lod) {
         texture.min_filter = filter;
-        return sampler.sample({0.5F, 0.5F}, lod);
+        return sampled(sampler, {0.5F, 0.5F}, lod);
     };
     EXPECT_EQ(at(Filter::linear, 2.0F), pure_red); // no mip levels
     EXPECT_EQ(at(Filter::linear_mip_nearest, 0.0F), pure_red);
@@ -179,12 +195,12 @@ TEST(TextureLines, AreTilesOfFourByFourTexels) {
     EXPECT_EQ(resources.textures[0].levels[0].address, 256U);
     EXPECT_EQ(resources.textures[0].levels[1].address, 1024U); // 9 tiles of 64 bytes, up to a multiple of 256
     const TextureSampler sampler(resources.textures[0]);
-    EXPECT_EQ(sampler.line({0.0F, 0.0F}, 0.0F), 4U);
-    EXPECT_EQ(sampler.line({0.39F, 0.0F}, 0.0F), 4U);
-    EXPECT_EQ(sampler.line({0.41F, 0.0F}, 0.0F), 5U);
-    EXPECT_EQ(sampler.line({0.0F, 0.99F}, 0.0F), 4U + 6U);
-    EXPECT_EQ(sampler.line({1.0F, 1.0F}, 0.0F), 4U + 8U);
-    EXPECT_EQ(sampler.line({0.0F, 0.0F}, 1.0F), 16U);
+    EXPECT_EQ(line_at(sampler, {0.0F, 0.0F}, 0.0F), 4U);
+    EXPECT_EQ(line_at(sampler, {0.39F, 0.0F}, 0.0F), 4U);
+    EXPECT_EQ(line_at(sampler, {0.41F, 0.0F}, 0.0F), 5U);
+    EXPECT_EQ(line_at(sampler, {0.0F, 0.99F}, 0.0F), 4U + 6U);
+    EXPECT_EQ(line_at(sampler, {1.0F, 1.0F}, 0.0F), 4U + 8U);
+    EXPECT_EQ(line_at(sampler, {0.0F, 0.0F}, 1.0F), 16U);
 }
 
 } // namespace

@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* general_help = R"(Examples:
   ropsim compare scene.glb --out report        four designs; then open report/report.html
-  ropsim compare gen:stack --k 8 --entry z     a scene made by rule
+  ropsim compare gen:blob --k 8 --entry z      a scene made by rule
   ropsim run scene.glb --design blender        every counter of one design
   ropsim describe designs                      what can be chosen, and what it means)";
 
@@ -26,7 +26,8 @@ constexpr const char* compare_help = R"(Examples:
 constexpr const char* run_help = R"(Examples:
   ropsim run scene.glb --design existing
   ropsim run scene.glb --design scoreboard --set scoreboard.side_buffer=128
-  ropsim run "gen:stack?layers=64" --design blender --size 64x64 --json)";
+  ropsim run scene.glb --design scoreboard --timeline --out report
+  ropsim run "gen:stack?n=64" --design blender --size 64x64 --json)";
 
 constexpr const char* describe_help = R"(Examples:
   ropsim describe                      an overview
@@ -41,27 +42,24 @@ void add_frame_options(CLI::App& command, FrameOptions& options) {
                     "glTF file (.glb, .gltf), FILE#N for its scene number N, or gen:NAME?key=value&key=value")
         ->required()
         ->type_name("SCENE");
-    command.add_option("--gpu", options.gpu, "Name of a GPU or a .toml file")->type_name("GPU")->capture_default_str();
-    command.add_option("--workload", options.workload, "Rendering method")->type_name("NAME")->capture_default_str();
+    command.add_option("--gpu", options.gpu, "Name of a GPU or a .toml file (default neutral)")->type_name("GPU");
+    command.add_option("--workload", options.workload, "Rendering method (default transparency)")->type_name("NAME");
     command.add_option("--k", options.k, "Entries per pixel of the k-buffer (default 4)")->type_name("K");
     command.add_option("--entry", options.entry, "What an entry holds: rgbz or z (default rgbz)")->type_name("KIND");
-    command.add_option("--size", options.size, "Pixels of the frame")->type_name("WxH")->capture_default_str();
+    command.add_option("--size", options.size, "Pixels of the frame (default 512x512)")->type_name("WxH");
     command
         .add_option(
             "--camera", options.camera,
             "auto, the number of a camera of the scene, or ex,ey,ez,tx,ty,tz,fovy (eye, target, vertical degrees)")
-        ->type_name("CAMERA")
-        ->capture_default_str();
-    command.add_option("--seed", options.seed, "Seed of everything random in the hardware")
-        ->type_name("N")
-        ->capture_default_str();
+        ->type_name("CAMERA");
+    command.add_option("--seed", options.seed, "Seed of everything random in the hardware (default 1)")->type_name("N");
     command.add_option("--threads", options.threads, "Threads (default: all cores); results do not depend on it")
         ->type_name("N");
     command
         .add_option("--set", options.settings,
                     "Overrides a number of the GPU, of a design or of the workload (workload.KEY); may be repeated")
         ->type_name("PATH=VALUE")
-        ->expected(1)
+        ->allow_extra_args(false)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
@@ -69,7 +67,7 @@ void add_output_options(CLI::App& command, OutputOptions& options) {
     command.add_option("--out", options.directory, "Folder for result.json, tables, report.html and pictures")
         ->type_name("DIR");
     command.add_flag("--json", options.json, "Print result.json on standard output, and nothing else");
-    command.add_flag("!--no-images", options.images, "Write no pictures (OpenImageIO is not loaded)");
+    command.add_flag("--no-images", options.no_images, "Write no pictures (OpenImageIO is not loaded)");
 }
 
 struct Parser {
@@ -84,18 +82,21 @@ struct Parser {
 
         CLI::App* command = app.add_subcommand("compare", "Run several k-buffer designs on one frame");
         add_frame_options(*command, compare.frame);
-        command->add_option("--designs", compare.designs, "Designs to run, separated by commas, or all")
-            ->delimiter(',')
-            ->expected(1)
-            ->type_name("NAMES")
-            ->capture_default_str();
+        command
+            ->add_option("--designs", compare.designs,
+                         "Designs to run, separated by commas, or all\n(default existing,scoreboard,blender,multipass)")
+            ->type_name("NAMES");
         add_output_options(*command, compare.output);
         command->footer(compare_help);
 
         command = app.add_subcommand("run", "Run one design and print every counter");
         add_frame_options(*command, run.frame);
-        command->add_option("--design", run.design, "Design to run")->type_name("NAME")->capture_default_str();
+        command->add_option("--design", run.design, "Design to run (default existing)")->type_name("NAME");
         add_output_options(*command, run.output);
+        command
+            ->add_flag("--timeline", run.output.timeline,
+                       "Also write timeline.json: what every unit did when, for Perfetto or chrome://tracing")
+            ->needs("--out");
         command->footer(run_help);
 
         command = app.add_subcommand("describe", "Say what can be chosen and what the numbers mean");
@@ -172,7 +173,7 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
         app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
     } catch (const CLI::CallForHelp&) {
         const auto chosen = app.get_subcommands();
-        return ShowText{chosen.empty() ? app.help() : chosen.front()->help()};
+        return ShowText{chosen.empty() ? app.help() : chosen.front()->help("ropsim")};
     } catch (const CLI::ParseError& error) {
         refuse_extras_of(app);
         const auto chosen = app.get_subcommands();

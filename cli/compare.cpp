@@ -8,29 +8,44 @@
 #include "reports/report_files.hpp"
 #include "reports/result.hpp"
 #include "reports/terminal_table.hpp"
+#include "reports/timeline.hpp"
+
+#include <fmt/format.h>
 
 namespace cli {
 
 namespace {
 
-reports::Comparison compute(const reports::ComparisonRequest& request) {
+reports::Comparison compute(const reports::ComparisonRequest& request, sim::Observer* observer) {
     ProgressLine line;
-    const reports::Supervision supervision{&stop_requested(), line.progress()};
+    const reports::Supervision supervision{&stop_requested(), line.progress(), observer};
     return reports::compare(reports::prepare(request, supervision), supervision);
 }
 
 std::string write(const reports::Comparison& comparison, const OutputOptions& output) {
     const FilesInProgress keep_alive;
-    return reports::write_report(comparison, output.directory, {output.images, &stop_requested()});
+    return reports::write_report(comparison, output.directory, {!output.no_images, &stop_requested()});
+}
+
+std::string write_timeline(const reports::Timeline& timeline, const OutputOptions& output) {
+    const FilesInProgress keep_alive;
+    const std::filesystem::path path = std::filesystem::path(output.directory) / "timeline.json";
+    timeline.write(path);
+    const std::uint64_t left_out = timeline.slices_left_out();
+    return fmt::format("The timeline is {}{}\n", path.string(),
+                       left_out == 0 ? "" : fmt::format("; its last {} slices are left out", left_out));
 }
 
 } // namespace
 
 void simulate(const reports::ComparisonRequest& request, const OutputOptions& output, const Presentation& present) {
-    if (!output.directory.empty()) reports::check_report_folder(output.directory, {output.images, nullptr});
-    const reports::Comparison comparison = compute(request);
+    if (!output.directory.empty()) reports::check_report_folder(output.directory, {!output.no_images, nullptr});
+    std::optional<reports::Timeline> timeline;
+    if (output.timeline) timeline.emplace();
+    const reports::Comparison comparison = compute(request, timeline ? &*timeline : nullptr);
     std::string written;
     if (!output.directory.empty()) written = write(comparison, output) + "\n";
+    if (timeline) written += write_timeline(*timeline, output);
     if (output.json)
         print(reports::result_text(reports::result_json(comparison)));
     else

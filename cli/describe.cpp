@@ -5,6 +5,7 @@
 #include "sim/check.hpp"
 #include "sim/suggest.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 
 namespace cli {
@@ -64,7 +65,8 @@ const CatalogueTopic* find_topic(const std::string& name) {
     for (const CatalogueTopic& topic : reports::catalogue_topics()) known.emplace_back(topic.name);
     for (const CatalogueTopic& topic : reports::catalogue_topics())
         for (const CatalogueEntry& entry : topic.entries()) known.push_back(entry.name);
-    throw sim::InputError(fmt::format("describe: nothing is called '{}'{}", name, sim::did_you_mean(name, known)));
+    throw sim::InputError(
+        fmt::format("describe: nothing is called '{}'{}; see ropsim describe", name, sim::did_you_mean(name, known)));
 }
 
 void describe_overview(const DescribeCommand& command) {
@@ -93,6 +95,10 @@ void describe(const DescribeCommand& command) {
     if (entries.empty()) unknown(command.topic);
     if (command.json) return print(reports::catalogue_json(entries).dump(2) + "\n");
     if (command.names) return print(names_text(entries));
+    // What lies below a path is a list; one thing is described in full.
+    const bool list =
+        std::all_of(entries.begin(), entries.end(), [](const auto& entry) { return entry.details.empty(); });
+    if (entries.size() > 1 && list) return print(list_text(entries, terminal_style()));
     std::string text;
     for (const CatalogueEntry& entry : entries) text += details_text(entry, terminal_style());
     print(text);

@@ -3,6 +3,7 @@
 #include "models/kbuffers/library.hpp"
 #include "sim/check.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <fmt/format.h>
 #include <string_view>
@@ -42,22 +43,31 @@ unsigned parse_threads(const std::string& text) {
 }
 
 // "all" stands for every design.
-std::vector<std::string> expand(std::vector<std::string> designs) {
-    if (designs != std::vector<std::string>{"all"}) return designs;
-    designs.clear();
-    for (const models::DesignInfo& design : models::designs()) designs.emplace_back(design.id);
-    return designs;
+std::vector<std::string> parse_designs(std::string_view text) {
+    std::vector<std::string> names;
+    if (text == "all") {
+        for (const models::DesignInfo& design : models::designs()) names.emplace_back(design.id);
+        return names;
+    }
+    for (std::size_t begin = 0; begin <= text.size();) {
+        const std::size_t end = std::min(text.find(',', begin), text.size());
+        names.emplace_back(text.substr(begin, end - begin));
+        if (names.back().empty())
+            throw sim::InputError(fmt::format("--designs: expected names separated by commas, got '{}'", text));
+        begin = end + 1;
+    }
+    return names;
 }
 
 } // namespace
 
-reports::ComparisonRequest request_of(const FrameOptions& options, std::vector<std::string> designs) {
+reports::ComparisonRequest request_of(const FrameOptions& options, const std::string& designs) {
     reports::ComparisonRequest request;
     request.scene = options.scene;
     request.camera = options.camera;
     request.workload = options.workload;
     request.gpu = options.gpu;
-    request.designs = expand(std::move(designs));
+    request.designs = parse_designs(designs);
     parse_size(options.size, request);
     if (!options.k.empty()) request.workload_settings.push_back("k=" + options.k);
     if (!options.entry.empty()) request.workload_settings.push_back("entry=" + options.entry);

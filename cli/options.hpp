@@ -27,13 +27,14 @@ struct FrameOptions {
 struct OutputOptions {
     std::string directory; ///< of --out; empty: no files
     bool json = false;
-    bool images = true;
+    bool no_images = false;
+    bool timeline = false; ///< of ropsim run
 };
 
 struct CompareCommand {
     FrameOptions frame;
     OutputOptions output;
-    std::vector<std::string> designs{"existing", "scoreboard", "blender", "multipass"};
+    std::string designs = "existing,scoreboard,blender,multipass"; ///< or "all"
 };
 
 struct RunCommand {
@@ -56,6 +57,6 @@ struct ShowText {
 using Command = std::variant<CompareCommand, RunCommand, DescribeCommand, ShowText>;
 
 /// The request that the options stand for. Throws sim::InputError when a number or size is none.
-reports::ComparisonRequest request_of(const FrameOptions& options, std::vector<std::string> designs);
+reports::ComparisonRequest request_of(const FrameOptions& options, const std::string& designs);
 
 } // namespace cli

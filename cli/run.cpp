@@ -11,7 +11,7 @@ void run(const RunCommand& command) {
         return reports::heading(comparison, style) + "\n" + reports::designs_text(comparison, style) + "\n" +
                reports::counters_text(comparison.runs.front(), style) + reports::left_out_text(comparison, style);
     };
-    simulate(request_of(command.frame, {command.design}), command.output, present);
+    simulate(request_of(command.frame, command.design), command.output, present);
 }
 
 } // namespace cli

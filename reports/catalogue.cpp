@@ -5,8 +5,8 @@
 #include "models/programs/library.hpp"
 #include "pipeline/gpu_params.hpp"
 #include "reports/counter_reference.hpp"
-#include "traces/generators.hpp"
 #include "ropsim_build.hpp"
+#include "traces/generators.hpp"
 #include "traces/workloads.hpp"
 
 #include <fmt/format.h>

@@ -11,7 +11,7 @@ namespace {
 // Control points at equal distances.
 constexpr std::array<Colour, 7> heat_points{
     {{10, 10, 28}, {48, 24, 110}, {128, 38, 128}, {206, 62, 88}, {244, 128, 44}, {250, 200, 84}, {255, 255, 224}}};
-constexpr std::array<Colour, 3> depth_points{{{250, 250, 245}, {140, 158, 178}, {22, 34, 66}}};
+constexpr std::array<Colour, 3> depth_points{{{255, 250, 238}, {236, 160, 84}, {84, 26, 34}}};
 
 Colour interpolate(std::span<const Colour> points, double position) {
     const double scaled = std::clamp(position, 0.0, 1.0) * static_cast<double>(points.size() - 1);
@@ -44,7 +44,7 @@ Colour depth_shade(double position) { return interpolate(depth_points, std::isna
 
 Colour empty_colour(std::uint32_t x, std::uint32_t y) {
     constexpr std::uint32_t cell = 8;
-    return (x / cell + y / cell) % 2 == 0 ? Colour{232, 232, 236} : Colour{218, 218, 224};
+    return (x / cell + y / cell) % 2 == 0 ? Colour{66, 72, 86} : Colour{78, 84, 100};
 }
 
 } // namespace reports

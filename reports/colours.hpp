@@ -13,10 +13,10 @@ Colour encode_srgb(float red, float green, float blue);
 /// that it reads the same in grey.
 Colour heat(double position);
 
-/// Depths, `position` in [0, 1] from near to far: from white to dark blue.
+/// Depths, `position` in [0, 1] from near to far: from white over orange to dark red.
 Colour depth_shade(double position);
 
-/// What stands for "nothing was stored here": a pale chequered pattern.
+/// What stands for "nothing was stored here": a slate chequered pattern.
 Colour empty_colour(std::uint32_t x, std::uint32_t y);
 
 } // namespace reports

@@ -119,6 +119,7 @@ pipeline::RunResult run_design(const ComparisonInput& input, const pipeline::KBu
     pipeline::MachineOptions options;
     options.seed = input.seed;
     options.stop = supervision.stop;
+    options.observer = supervision.observer;
     if (supervision.progress != nullptr) options.quads_done = &supervision.progress->quads_done;
     const Stopwatch watch;
     pipeline::Machine machine(input.gpu_params, *input.frame, input.streams, design, options);
@@ -167,6 +168,7 @@ ComparisonInput prepare(const ComparisonRequest& request, const Supervision& sup
 
 Comparison compare(ComparisonInput input, const Supervision& supervision) {
     const Stopwatch watch;
+    CHECK(supervision.observer == nullptr || input.designs.size() == 1);
     enter(supervision, Progress::Phase::simulating);
     Comparison comparison;
     if (supervision.progress != nullptr) supervision.progress->quads_total = all_quads(input);

@@ -5,6 +5,7 @@
 #include "pipeline/gpu_params.hpp"
 #include "pipeline/reference.hpp"
 #include "reports/comparison_result.hpp"
+#include "sim/observer.hpp"
 
 #include <atomic>
 #include <memory>
@@ -36,10 +37,11 @@ struct Progress {
     std::atomic<std::uint64_t> quads_total = 0;
 };
 
-/// Whoever started a comparison can watch and end it; both may be null.
+/// Whoever started a comparison can watch and end it; all may be null.
 struct Supervision {
     const std::atomic<bool>* stop = nullptr; ///< becomes true: sim::Interrupted is thrown soon
     Progress* progress = nullptr;
+    sim::Observer* observer = nullptr; ///< sees the run; for comparisons of one design only
 };
 
 /// All that the runs share. Immutable while they run.

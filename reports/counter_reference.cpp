@@ -4,6 +4,7 @@
 #include "pipeline/gpu_params.hpp"
 
 #include <algorithm>
+#include <charconv>
 
 namespace reports {
 
@@ -55,6 +56,18 @@ const sim::FieldInfo* find_counter(std::string_view stage, std::string_view path
         if (dot == std::string_view::npos) return nullptr;
         path = path.substr(0, dot);
     }
+}
+
+std::string counter_name(std::string_view stage, std::string_view path) {
+    constexpr std::string_view by_client = "bytes.";
+    std::size_t client = 0;
+    if (stage == "memory_partition" && path.starts_with(by_client)) {
+        const std::string_view number = path.substr(by_client.size());
+        const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), client);
+        if (error == std::errc() && client < pipeline::memory_client_count)
+            return std::string(by_client) + std::string(pipeline::memory_client_names[client]);
+    }
+    return std::string(path);
 }
 
 } // namespace reports

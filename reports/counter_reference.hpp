@@ -21,4 +21,7 @@ const std::vector<StageReference>& stage_reference();
 /// The counter that a leaf of result.json belongs to ("l1.kbuffer_hits", "bytes.3", "occupancy.mean"), or null.
 const sim::FieldInfo* find_counter(std::string_view stage, std::string_view path);
 
+/// `path` with the elements of arrays named: "bytes.3" of the memory partitions -> "bytes.kbuffer_read".
+std::string counter_name(std::string_view stage, std::string_view path);
+
 } // namespace reports

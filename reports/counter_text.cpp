@@ -18,7 +18,8 @@ struct CounterLine {
 };
 
 std::string value_text(const ordered_json& value) {
-    return value.is_number_unsigned() ? with_commas(value.get<std::uint64_t>()) : cell_text(value);
+    if (value.is_number_unsigned()) return with_commas(value.get<std::uint64_t>());
+    return value.is_number_float() ? fmt::format("{:.4g}", value.get<double>()) : cell_text(value);
 }
 
 bool is_zero(const ordered_json& value) { return value.is_number() && value.get<double>() == 0.0; }
@@ -26,7 +27,7 @@ bool is_zero(const ordered_json& value) { return value.is_number() && value.get<
 std::string activity_text(const ordered_json& fractions) {
     std::string text;
     for (const auto& activity : fractions.items())
-        if (!is_zero(activity.value()))
+        if (activity.value().get<double>() >= 0.0005)
             text += fmt::format("{}{} {:.1f} %", text.empty() ? "" : ", ", activity.key(),
                                 100.0 * activity.value().get<double>());
     return text;
@@ -54,7 +55,7 @@ std::string stage_text(const std::string& stage, const ordered_json& report, con
     for (const auto& [path, value] : flatten(report.value("counters", ordered_json::object()))) {
         const sim::FieldInfo* info = find_counter(stage, path);
         if (is_zero(value))
-            zeros += (zeros.empty() ? "" : ", ") + path;
+            zeros += (zeros.empty() ? "" : ", ") + counter_name(stage, path);
         else
             lines.push_back(
                 {path, value_text(value), info == nullptr ? "" : info->unit, info == nullptr ? "" : info->text});
@@ -64,7 +65,7 @@ std::string stage_text(const std::string& stage, const ordered_json& report, con
     if (style.colour) title = fmt::format("\033[1m{}\033[0m", title);
     std::string text = wrap(fmt::format("{}: {}", title, activity_text(fractions)), style.columns, 2);
     text += lines_text(lines, style);
-    if (!zeros.empty()) text += wrap("  0: " + zeros, style.columns, 5);
+    if (!zeros.empty()) text += wrap("  zero: " + zeros, style.columns, 8);
     return text;
 }
 

@@ -1,5 +1,6 @@
 #include "reports/csv.hpp"
 
+#include "reports/counter_rows.hpp"
 #include "reports/flatten.hpp"
 #include "reports/run_numbers.hpp"
 #include "sim/described.hpp"
@@ -115,12 +116,10 @@ Table designs_table(const Comparison& comparison) {
 }
 
 Table stages_table(const Comparison& comparison) {
-    Table table{"stages.csv", {"design", "stage", "kind", "name", "value"}, {}};
+    Table table{"stages.csv", {"design", "stage", "kind", "name", "value", "unit"}, {}};
     for (const RunResult& run : comparison.runs)
-        for (const auto& stage : run.stages.items())
-            for (const auto& kind : stage.value().items())
-                for (const auto& [name, value] : flatten(kind.value()))
-                    table.rows.push_back({run.design, stage.key(), kind.key(), name, cell_text(value)});
+        for (const CounterRow& row : counter_rows(run))
+            table.rows.push_back({run.design, row.stage, row.kind, row.name, row.value, row.unit});
     return table;
 }
 

@@ -18,9 +18,9 @@ constexpr std::array<const char*, 4> hazard_texts{"H1 in flight", "H2 write path
 constexpr Colour kbuffer_only{24, 140, 132};
 
 Colour dimmed(std::span<const float> rgba, std::size_t pixel) {
-    // Rec. 709 luminance; a fifth of the light leaves half of the displayed brightness.
+    // Rec. 709 luminance; a tenth of the light leaves a third of the displayed brightness.
     const float* linear = &rgba[4 * pixel];
-    const float grey = 0.2F * (0.2126F * linear[0] + 0.7152F * linear[1] + 0.0722F * linear[2]);
+    const float grey = 0.1F * (0.2126F * linear[0] + 0.7152F * linear[1] + 0.0722F * linear[2]);
     return encode_srgb(grey, grey, grey);
 }
 
@@ -73,7 +73,7 @@ Legend hazard_legend(const pipeline::HazardCounts& counts, const std::string& de
 }
 
 // A difference above 0 is never as dark as no difference.
-Colour difference_heat(double position) { return heat(position <= 0.0 ? 0.0 : 0.2 + 0.8 * position); }
+Colour difference_heat(double position) { return heat(position <= 0.0 ? 0.0 : 0.35 + 0.65 * position); }
 
 Legend difference_legend(std::uint32_t factor, std::size_t differing, std::size_t wrong, const std::string& design) {
     Legend legend;
@@ -115,13 +115,10 @@ Legend overlap_legend(const Complexity& complexity) {
     Legend legend;
     legend.title = fmt::format("Fragments per pixel: mean {:.2f}, max {}", mean, complexity.highest);
     legend.ramp = heat;
-    const std::uint32_t steps = std::min(complexity.shown, 6U);
-    for (std::uint32_t step = 0; step <= steps; ++step) {
-        const std::uint32_t number = complexity.shown * step / steps;
-        const bool cut = step == steps && complexity.shown < complexity.highest;
-        legend.ticks.push_back(
-            {static_cast<double>(number) / complexity.shown, fmt::format("{}{}", cut ? ">=" : "", number)});
-    }
+    const std::uint32_t step = (complexity.shown + 9) / 10;
+    for (std::uint32_t number = 0; number <= complexity.shown; number += step)
+        legend.ticks.push_back({static_cast<double>(number) / complexity.shown, std::to_string(number)});
+    if (complexity.shown < complexity.highest) legend.ticks.back().text.insert(0, ">=");
     return legend;
 }
 

@@ -25,7 +25,7 @@ struct DepthRange {
 };
 DepthRange depth_range(const KBufferLayout& layout, std::span<const float> kbuffer, std::size_t pixels);
 
-/// One layer: its colours when entries have any, else its depths, white (range.near) to dark blue (range.far), with a
+/// One layer: its colours when entries have any, else its depths, white (range.near) to dark red (range.far), with a
 /// scale below. Pixels without an entry are chequered.
 Picture layer_picture(Size size, const KBufferLayout& layout, std::span<const float> kbuffer, std::uint32_t layer,
                       DepthRange range);

@@ -1,5 +1,6 @@
 #include "reports/terminal_table.hpp"
 
+#include "reports/left_out.hpp"
 #include "reports/numbers.hpp"
 #include "reports/run_numbers.hpp"
 
@@ -121,26 +122,6 @@ std::string header_of(const Widths& widths, bool colour) {
     return paint(without_trailing_blanks(titles), "1", colour) + "\n" + without_trailing_blanks(units) + "\n";
 }
 
-// "reason" -> who lacks the unit, in the order of the designs.
-struct LeftOutEntry {
-    std::pair<std::string, std::string> what;
-    std::vector<std::string> designs;
-};
-
-std::vector<LeftOutEntry> left_out_entries(const Comparison& comparison) {
-    std::vector<LeftOutEntry> entries;
-    for (const RunResult& run : comparison.runs)
-        for (const auto& what : run.left_out) {
-            const auto known = std::find_if(entries.begin(), entries.end(),
-                                            [&](const LeftOutEntry& entry) { return entry.what == what; });
-            if (known == entries.end())
-                entries.push_back({what, {run.design}});
-            else
-                known->designs.push_back(run.design);
-        }
-    return entries;
-}
-
 } // namespace
 
 std::string wrap(const std::string& text, std::size_t columns_allowed, std::size_t indent) {
@@ -149,14 +130,14 @@ std::string wrap(const std::string& text, std::size_t columns_allowed, std::size
         const std::size_t end = std::min(text.find(' ', begin), text.size());
         const std::string word = text.substr(begin, end - begin);
         if (!line.empty() && line.size() + 1 + word.size() > columns_allowed) {
-            result += line + "\n";
+            result += without_trailing_blanks(line) + "\n";
             line = std::string(indent, ' ') + word;
         } else {
             line += (begin == 0 ? "" : " ") + word;
         }
         begin = end + 1;
     }
-    return result + line + "\n";
+    return result + without_trailing_blanks(line) + "\n";
 }
 
 std::string heading(const Comparison& comparison, TerminalStyle style) {
@@ -188,11 +169,10 @@ std::string left_out_text(const Comparison& comparison, TerminalStyle style) {
     const auto entries = left_out_entries(comparison);
     std::string text = entries.empty() ? "Nothing was left out.\n" : "Left out:\n";
     std::size_t widest = 0;
-    for (const LeftOutEntry& entry : entries) widest = std::max(widest, entry.what.first.size());
+    for (const LeftOutEntry& entry : entries) widest = std::max(widest, entry.unit.size());
     for (const LeftOutEntry& entry : entries) {
-        std::string line = fmt::format("  {:<{}}  {}", entry.what.first, widest, entry.what.second);
-        if (entry.designs.size() < comparison.runs.size()) line += fmt::format(" ({})", fmt::join(entry.designs, ", "));
-        text += wrap(line, style.columns, widest + 4);
+        const std::string who = entry.by_all ? "" : fmt::format("{}: ", fmt::join(entry.designs, ", "));
+        text += wrap(fmt::format("  {:<{}}  {}{}", entry.unit, widest, who, entry.reason), style.columns, widest + 4);
     }
     return text;
 }

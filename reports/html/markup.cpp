@@ -42,7 +42,10 @@ std::string script_json(const nlohmann::ordered_json& json) {
 
 std::string html_table(const std::vector<std::string>& header, const std::vector<std::vector<HtmlCell>>& rows) {
     std::string html = "<div class=\"scroll\"><table><thead><tr>";
-    for (const std::string& title : header) html += fmt::format("<th>{}</th>", escape_html(title));
+    for (std::size_t i = 0; i < header.size(); ++i) {
+        const bool numbers = !rows.empty() && rows.front().at(i).kind.starts_with("number");
+        html += fmt::format("<th{}>{}</th>", numbers ? " class=\"number\"" : "", escape_html(header[i]));
+    }
     html += "</tr></thead><tbody>\n";
     for (const auto& row : rows) {
         html += "<tr>";

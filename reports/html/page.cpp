@@ -30,7 +30,7 @@ std::string facts(const Comparison& comparison) {
                                   : fmt::format("<p class=\"note\">Not drawn: {}.</p>\n",
                                                 escape_html(fmt::format("{}", fmt::join(scene.notes, "; "))));
     return fmt::format(
-               "<p><b>{}</b> ({} triangles drawn, {} draws, hash {}) at {} x {} pixels, camera {}. Method: {}. "
+               "<p><b>{}</b> ({} triangles drawn, draws: {}, hash {}) at {} x {} pixels, camera {}. Method: {}. "
                "GPU: <b>{}</b>. Seed {}.</p>\n<p class=\"note\">ropsim {} ({}); {} on {} threads, at most {} of "
                "memory.</p>\n",
                escape_html(scene.name), with_commas(scene.triangles_drawn), with_commas(scene.draws),

@@ -50,8 +50,8 @@
   if (links.length) add("Bytes per fragment on each link", {
     type: "bar",
     data: { labels: links, datasets: designs.map((d, i) => ({ label: d.id, data: links.map(l => d.bytes[l] || 0), backgroundColor: colourOf(i) })) },
-    options: { scales: { y: axis("bytes per fragment") } }
-  });
+    options: { indexAxis: "y", scales: { x: axis("bytes per fragment"), y: { ticks: { autoSkip: false } } } }
+  }, true);
 
   let bins = 0;
   designs.forEach(d => d.distance.forEach((count, bin) => { if (count) bins = Math.max(bins, bin + 1); }));

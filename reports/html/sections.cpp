@@ -1,7 +1,9 @@
 #include "reports/html/sections.hpp"
 
+#include "reports/counter_rows.hpp"
 #include "reports/flatten.hpp"
 #include "reports/html/markup.hpp"
+#include "reports/left_out.hpp"
 #include "reports/numbers.hpp"
 #include "reports/run_numbers.hpp"
 
@@ -40,20 +42,25 @@ std::vector<HtmlCell> summary_row(const RunResult& run, const RunResult& first) 
             number(short_number(cycles_per_second(run)))};
 }
 
-// Pages that list every layer of every design stay short this way.
-std::string figure(const PictureFile& picture) {
+std::string figure(const PictureFile& picture, bool magnified) {
     const std::string path = escape_html(picture.file.generic_string());
-    return fmt::format("<figure><a href=\"{0}\"><img src=\"{0}\" alt=\"{1}\" loading=\"lazy\"></a>"
+    return fmt::format("<figure{2}><a href=\"{0}\"><img src=\"{0}\" alt=\"{1}\" loading=\"lazy\"></a>"
                        "<figcaption>{1}</figcaption></figure>\n",
                        path,
-                       escape_html(picture.subject.empty() ? picture.title : picture.subject + ": " + picture.title));
+                       escape_html(picture.subject.empty() ? picture.title : picture.subject + ": " + picture.title),
+                       magnified ? " class=\"magnified\"" : "");
 }
 
-std::string figures_of(const std::vector<PictureFile>& pictures, const std::string& subject, bool layers) {
+std::string grid(const std::string& figures) { return "<div class=\"pictures\">\n" + figures + "</div>\n"; }
+
+std::string figures_of(const Comparison& comparison, const std::vector<PictureFile>& pictures,
+                       const std::string& subject, bool layers) {
+    // Small frames are enlarged with sharp pixels; shrunken ones must be smoothed, or single pixels would vanish.
+    const bool magnified = comparison.width() < 256;
     std::string html;
     for (const PictureFile& picture : pictures)
-        if (picture.subject == subject && picture.layer == layers) html += figure(picture);
-    return html.empty() ? html : "<div class=\"pictures\">\n" + html + "</div>\n";
+        if (picture.subject == subject && picture.layer == layers) html += figure(picture, magnified);
+    return html;
 }
 
 } // namespace
@@ -74,13 +81,15 @@ std::string summary_section(const Comparison& comparison) {
 std::string pictures_section(const Comparison& comparison, const std::vector<PictureFile>& pictures) {
     if (pictures.empty()) return "<p>This comparison was made without pictures.</p>\n";
     std::string html =
-        figures_of(pictures, "", false) + "<h3>reference</h3>\n" + figures_of(pictures, "reference", false);
-    const std::string layers = figures_of(pictures, "reference", true);
-    if (!layers.empty()) html += html_details("layers of the reference", layers);
+        "<h3>reference and depth complexity</h3>\n" +
+        grid(figures_of(comparison, pictures, "reference", false) + figures_of(comparison, pictures, "", false));
+    const std::string layers = figures_of(comparison, pictures, "reference", true);
+    if (!layers.empty()) html += html_details("layers of the reference", grid(layers));
     for (const RunResult& run : comparison.runs) {
-        html += fmt::format("<h3>{}</h3>\n{}", escape_html(run.design), figures_of(pictures, run.design, false));
-        const std::string own_layers = figures_of(pictures, run.design, true);
-        if (!own_layers.empty()) html += html_details("layers of " + run.design, own_layers);
+        html += fmt::format("<h3>{}</h3>\n{}", escape_html(run.design),
+                            grid(figures_of(comparison, pictures, run.design, false)));
+        const std::string own_layers = figures_of(comparison, pictures, run.design, true);
+        if (!own_layers.empty()) html += html_details("layers of " + run.design, grid(own_layers));
     }
     return html;
 }
@@ -95,10 +104,11 @@ std::string passes_section(const Comparison& comparison) {
 
 std::string needs_section(const Comparison& comparison) {
     std::vector<std::vector<HtmlCell>> rows;
-    for (const RunResult& run : comparison.runs)
-        for (const auto& [unit, reason] : run.left_out)
-            rows.push_back({{run.design, "name"}, {unit, ""}, {reason, ""}});
-    std::string html = html_table({"design", "left out", "because"}, rows);
+    for (const LeftOutEntry& entry : left_out_entries(comparison))
+        rows.push_back({{entry.unit, "name"},
+                        {entry.by_all ? "all" : fmt::format("{}", fmt::join(entry.designs, ", ")), ""},
+                        {entry.reason, ""}});
+    std::string html = html_table({"left out", "by", "because"}, rows);
     for (const RunResult& run : comparison.runs)
         html += fmt::format("<p><b>{}</b> was built of: {}.</p>\n", escape_html(run.design),
                             escape_html(fmt::format("{}", fmt::join(run.built, ", "))));
@@ -109,11 +119,15 @@ std::string counters_section(const Comparison& comparison) {
     std::string html;
     for (const RunResult& run : comparison.runs) {
         std::vector<std::vector<HtmlCell>> rows;
-        for (const auto& stage : run.stages.items())
-            for (const auto& kind : stage.value().items())
-                for (const auto& [name, value] : flatten(kind.value()))
-                    rows.push_back({{stage.key(), "name"}, {kind.key(), ""}, {name, ""}, number(cell_text(value))});
-        html += html_details("all counters of " + run.design, html_table({"stage", "", "name", "value"}, rows));
+        for (const CounterRow& row : counter_rows(run))
+            rows.push_back({{row.stage, "name"},
+                            {row.kind, ""},
+                            {row.name, ""},
+                            number(row.value),
+                            {row.unit, ""},
+                            {row.meaning, ""}});
+        html += html_details("all counters of " + run.design,
+                             html_table({"stage", "", "name", "value", "unit", "meaning"}, rows));
     }
     return html;
 }

@@ -128,7 +128,7 @@ TEST(ReportsText, LeftOutIsStatedOnceWithItsReason) {
     const auto lines = lines_of(reports::left_out_text(comparison, {}));
     ASSERT_EQ(lines.size(), 3U);
     EXPECT_EQ(lines[1], "  stencil     no pass tests it");
-    EXPECT_EQ(lines[2], "  texture_l1  the blender reads its own tiles (safe)");
+    EXPECT_EQ(lines[2], "  texture_l1  safe: the blender reads its own tiles");
 }
 
 TEST(ReportsText, WrapBreaksBetweenWords) {

@@ -1,0 +1,60 @@
+# Completion of ropsim for bash: source this file, or put it into /usr/share/bash-completion/completions/ropsim.
+# Names of designs, GPUs, workloads and generators come from the program itself.
+
+_ropsim_names() {
+    "${COMP_WORDS[0]}" describe --names "$1" 2>/dev/null
+}
+
+_ropsim_words() {
+    mapfile -t COMPREPLY < <(compgen -W "$1" -- "${COMP_WORDS[COMP_CWORD]}")
+}
+
+# The part after the last comma, with what is before it kept.
+_ropsim_list() {
+    local word=${COMP_WORDS[COMP_CWORD]} before=""
+    [[ $word != *,* ]] || before=${word%,*},
+    mapfile -t COMPREPLY < <(compgen -P "$before" -W "$1" -- "${word##*,}")
+    compopt -o nospace
+}
+
+_ropsim_files() {
+    local word=${COMP_WORDS[COMP_CWORD]} entry
+    compopt -o filenames 2>/dev/null
+    while read -r entry; do
+        [[ -d $entry || $entry == *.$1 || $entry == *.${2:-$1} ]] && COMPREPLY+=("$entry")
+    done < <(compgen -f -- "$word")
+}
+
+_ropsim() {
+    local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD - 1]} command=${COMP_WORDS[1]}
+    local frame="--gpu --workload --k --entry --size --camera --seed --threads --set --out --json --no-images --help"
+    COMPREPLY=()
+    if ((COMP_CWORD == 1)); then
+        _ropsim_words "compare run describe --help --version"
+        return
+    fi
+    case $before in
+        --gpu) _ropsim_words "$(_ropsim_names gpus)"; return ;;
+        --design) _ropsim_words "$(_ropsim_names designs)"; return ;;
+        --designs) _ropsim_list "$(_ropsim_names designs) all"; return ;;
+        --workload) _ropsim_words "$(_ropsim_names workloads)"; return ;;
+        --entry) _ropsim_words "rgbz z"; return ;;
+        --set) _ropsim_words "$(_ropsim_names params | sed 's/$/=/')"; compopt -o nospace; return ;;
+        --size) _ropsim_words "256x256 512x512 1024x1024 1920x1080"; return ;;
+        --camera) _ropsim_words "auto 0"; return ;;
+        --out) mapfile -t COMPREPLY < <(compgen -d -- "$word"); compopt -o filenames; return ;;
+        --k | --seed | --threads) return ;;
+    esac
+    case $command in
+        compare) [[ $word == -* ]] && _ropsim_words "--designs $frame" || _ropsim_files glb gltf ;;
+        run) [[ $word == -* ]] && _ropsim_words "--design $frame" || _ropsim_files glb gltf ;;
+        describe)
+            if [[ $word == -* ]]; then
+                _ropsim_words "--names --json --help"
+            else
+                _ropsim_words "$(_ropsim_names; _ropsim_names gpus; _ropsim_names designs; _ropsim_names workloads)"
+            fi ;;
+    esac
+}
+
+complete -F _ropsim ropsim

@@ -5,6 +5,7 @@ namespace pipeline {
 namespace {
 
 constexpr std::uint32_t largest_request = 4096; ///< bytes; see MemoryRequest
+constexpr std::uint32_t most_draws = 1U << 24U; ///< of a frame
 
 sim::Time time_of(DramChannel::Fine fine) {
     return (fine + DramChannel::fine_per_time - 1) / DramChannel::fine_per_time;
@@ -69,7 +70,7 @@ bool MemoryController::accept() {
         if (!port.requests->connected() || !room) continue;
         const MemoryRequest* request = port.requests->peek();
         if (request == nullptr) continue;
-        CHECK(request->bytes >= 1 && request->bytes <= largest_request);
+        CHECK(request->bytes >= 1 && request->bytes <= largest_request && request->draw < most_draws);
         const std::uint32_t id = free_ids_.back();
         free_ids_.pop_back();
         waiting_[id] = {request->tag, static_cast<std::uint8_t>(index), request->write};

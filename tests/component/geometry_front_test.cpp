@@ -184,6 +184,31 @@ TEST(GeometryFront, VertexBoundFrameTakesShaderTimePerVertex) {
     EXPECT_NEAR(cycles / static_cast<double>(run.front.stats().vertex_shader.vertices.value), 8.0, 0.5);
 }
 
+TEST(GeometryFront, G10BusOf4GigabytesPerSecondGivesAtMost125MillionVerticesPerSecond) {
+    // Arrays of the application, 32 bytes per vertex, drawn without indices: the memory behind the front is the bus.
+    const std::uint32_t count = 30'000;
+    const GeometryScene scene = tests::make_scene(
+        {{.index_type = IndexType::none, .vertex_count = count, .indices = first_numbers(count), .vertex_bytes = 32}});
+    Needs needs = scene.frame.needs;
+    needs.normals = true;
+    needs.texcoords = true;
+    sim::Simulation simulation;
+    const sim::Clock& clock = simulation.add_clock("core", 430);
+    MemoryParams bus;
+    bus.partitions = 1;
+    bus.bandwidth = 4;
+    MemorySystem memory(simulation, clock, bus);
+    GeometryFront front(simulation, clock, {}, scene.frame, needs);
+    tests::Sink<TriangleTask> sink(simulation.context("sink", clock));
+    front.attach(memory);
+    sim::connect(front.triangles_out(), sink.in, {});
+    front.start(scene.stream, scene.frame.draws);
+    simulation.run();
+    const double rate = count / (static_cast<double>(simulation.now()) * 1e-12);
+    EXPECT_LE(rate, 125e6);
+    EXPECT_GE(rate, 0.97 * 125e6);
+}
+
 TEST(GeometryFront, IndexFetchIsBuiltOnlyWhenIndicesAreRead) {
     const GeometryScene scene =
         tests::make_scene({{.index_type = IndexType::none, .vertex_count = 300, .indices = first_numbers(300)}});

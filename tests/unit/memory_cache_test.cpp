@@ -18,7 +18,6 @@ class BruteForceCache {
     struct Outcome {
         bool hit = false, evicted = false, dirty = false;
         std::uint64_t victim = 0;
-        friend bool operator==(const Outcome&, const Outcome&) = default;
     };
     Outcome access(std::uint64_t line, bool write) {
         std::list<Entry>& set = sets_[line % sets_.size()];

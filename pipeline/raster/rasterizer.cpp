@@ -11,15 +11,12 @@ constexpr std::uint32_t tile_key(const Quad& quad) {
 } // namespace
 
 void Rasterizer::begin(const Triangle& triangle) {
-    next_quad_             = triangle.first_quad;
-    end_quad_              = triangle.first_quad + triangle.quads;
-    std::uint32_t occupied = 0;
-    std::uint32_t last     = ~std::uint32_t{0};
-    for (QuadId quad = next_quad_; quad != end_quad_; ++quad) {
-        const std::uint32_t key = tile_key(pass_->stream->quads[quad]);
-        occupied += key != last ? 1U : 0U;
-        last = key;
-    }
+    next_quad_ = triangle.first_quad;
+    end_quad_ = triangle.first_quad + triangle.quads;
+    std::uint32_t occupied = triangle.quads == 0 ? 0 : 1;
+    if (triangle.tiles > 1)
+        for (QuadId quad = next_quad_ + 1; quad < end_quad_; ++quad)
+            if (tile_key(pass_->stream->quads[quad]) != tile_key(pass_->stream->quads[quad - 1])) ++occupied;
     CHECK(triangle.tiles >= occupied);
     empty_tiles_ = triangle.tiles - occupied;
     stats_.tiles += triangle.tiles;
@@ -39,6 +36,7 @@ void Rasterizer::emit(QuadId id) {
 
 sim::Activity Rasterizer::tick() {
     bool progress = false;
+    std::uint32_t quads = params_.quads_per_clk; // that may still leave at this edge
     for (std::uint32_t tiles = 0; tiles < params_.tiles_per_clk; ++tiles) {
         if (next_quad_ == end_quad_ && empty_tiles_ == 0) {
             const TriangleTask* task = triangles_in.peek();
@@ -52,19 +50,15 @@ sim::Activity Rasterizer::tick() {
             progress = true;
             continue;
         }
-        if (next_quad_ == end_quad_) continue;
         const std::uint32_t tile = tile_key(pass_->stream->quads[next_quad_]);
-        for (std::uint32_t n = 0; n < params_.quads_per_clk && next_quad_ != end_quad_; ++n) {
-            if (tile_key(pass_->stream->quads[next_quad_]) != tile) break;
+        for (; next_quad_ != end_quad_ && tile_key(pass_->stream->quads[next_quad_]) == tile; --quads) {
+            if (quads == 0) return sim::Activity::busy;
             if (!quads_out.ready()) return progress ? sim::Activity::busy : sim::Activity::blocked;
             emit(next_quad_++);
             progress = true;
         }
-        // The rest of a tile with more quads than fit in one cycle is not a new visit.
-        if (next_quad_ != end_quad_ && tile_key(pass_->stream->quads[next_quad_]) == tile) break;
     }
-    if (progress) return sim::Activity::busy;
-    return next_quad_ == end_quad_ && empty_tiles_ == 0 ? sim::Activity::starved : sim::Activity::blocked;
+    return progress ? sim::Activity::busy : sim::Activity::starved;
 }
 
 } // namespace pipeline

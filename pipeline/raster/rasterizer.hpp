@@ -1,7 +1,8 @@
 // The rasterizer: walks the 8x8 tiles of a triangle and emits its 2x2 quads.
 //
-// Modelled: tiles visited per cycle, empty ones included; quads emitted per cycle, all from one tile. Coverage, depth and
-// colour were computed before (functional/).
+// Modelled: tiles visited per cycle, empty ones included; quads emitted per cycle, all from the tiles visited in it. A
+// tile with more quads than leave in one cycle holds the next visit up. Coverage, depth and colour were computed before
+// (functional/).
 // Not modelled: hierarchical depth, multisampling.
 // Source: specification 004, sections 2.1, 7 (raster_quads_per_clk), 9.3.
 #pragma once
@@ -21,7 +22,7 @@ struct RasterizerParams {
 
     static constexpr auto fields() {
         return std::tuple{
-            sim::field<&RasterizerParams::quads_per_clk>("Quads emitted per cycle, all from one tile").unit("quads").range(1, 64),
+            sim::field<&RasterizerParams::quads_per_clk>("Quads emitted per cycle, of all tiles visited in it").unit("quads").range(1, 64),
             sim::field<&RasterizerParams::tiles_per_clk>("8x8 tiles visited per cycle").unit("tiles").range(1, 64)};
     }
 };

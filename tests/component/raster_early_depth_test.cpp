@@ -1,0 +1,96 @@
+// The early depth test between a source and a sink of quads.
+#include "pipeline/functional/depth_format.hpp"
+#include "pipeline/raster/early_depth_test.hpp"
+#include "tests/support/quad_kit.hpp"
+#include "tests/support/sim_kit.hpp"
+
+namespace {
+
+using Cycles = std::vector<sim::Cycle>;
+using pipeline::QuadTask;
+
+struct Bench {
+    tests::Rig rig;
+    pipeline::EarlyDepthTest unit;
+    tests::Source<QuadTask> source;
+    tests::Sink<QuadTask> sink;
+
+    Bench(const tests::QuadPass& pass, const pipeline::EarlyDepthParams& params, tests::SinkOptions sink_options = {})
+        : unit(rig.context("early_depth"), params, pass.context),
+          source(rig.context("source"), pass.quad_tasks()),
+          sink(rig.context("sink"), std::move(sink_options)) {
+        sim::connect(source.out, unit.quads_in, {1, 64, 128});
+        sim::connect(unit.quads_out, sink.in, {params.latency, params.quads_per_clk, 2 * params.quads_per_clk});
+        rig.simulation.run();
+    }
+};
+
+/// A depth surface with one value everywhere.
+std::vector<pipeline::DepthCode> surface(const tests::QuadPass& pass, float depth) {
+    return std::vector(std::size_t{pass.stream.width} * pass.stream.height,
+                       pipeline::depth_code(pass.context.read_only_format, depth));
+}
+
+TEST(EarlyDepthTest, PassesEverythingWithoutADepthSurface) {
+    tests::QuadPass pass;
+    pass.quads(8);
+    const Bench bench(pass, {.quads_per_clk = 4, .latency = 8});
+    EXPECT_EQ(tests::quads_of(bench.sink.values()), tests::counting(8));
+    EXPECT_EQ(bench.unit.stats().fragments_rejected, 0U);
+}
+
+// Received at cycle 1; the latency is that of the link behind it.
+TEST(EarlyDepthTest, LatencyAndRateAreExact) {
+    tests::QuadPass pass;
+    pass.quads(8);
+    const Bench bench(pass, {.quads_per_clk = 4, .latency = 8});
+    EXPECT_EQ(bench.sink.cycles(), (Cycles{9, 9, 9, 9, 10, 10, 10, 10}));
+}
+
+TEST(EarlyDepthTest, RejectsWhatIsNotNearerThanTheSurface) {
+    tests::QuadPass pass;
+    const std::vector<pipeline::DepthCode> depth = surface(pass, 0.5F);
+    pass.context.read_only_depth = &depth;
+    pass.quad(0, 0, 15, 0.25F);
+    pass.quad(2, 0, 15, 0.5F); // equal depth is not less
+    pass.quad(4, 0, 15, 0.75F);
+    pass.quad(6, 0, 15);
+    pass.stream.depths[3] = {0.25F, 0.75F, 0.5F, 0.4F};
+    const Bench bench(pass, {});
+    ASSERT_EQ(bench.sink.size(), 2U);
+    EXPECT_EQ(bench.sink.values()[0].mask, 15);
+    EXPECT_EQ(bench.sink.values()[1].mask, 0b1001);
+    EXPECT_EQ(bench.unit.stats().quads, 4U);
+    EXPECT_EQ(bench.unit.stats().quads_rejected, 2U);
+    EXPECT_EQ(bench.unit.stats().fragments, 16U);
+    EXPECT_EQ(bench.unit.stats().fragments_rejected, 10U);
+}
+
+TEST(EarlyDepthTest, LooksAtEachPixelsOwnDepth) {
+    tests::QuadPass pass;
+    std::vector<pipeline::DepthCode> depth = surface(pass, 0.5F);
+    depth[std::size_t{3} * pass.stream.width + 5] = pipeline::depth_code(pass.context.read_only_format, 0.1F);
+    pass.context.read_only_depth = &depth;
+    pass.quad(4, 2, 15, 0.25F);
+    const Bench bench(pass, {});
+    EXPECT_EQ(bench.sink.values().at(0).mask, 0b0111); // pixel 3 of the quad is (5, 3)
+}
+
+TEST(EarlyDepthTest, StalledSinkBlocksItAndNothingIsLost) {
+    tests::QuadPass pass;
+    pass.quads(100);
+    const Bench bench(pass, {.quads_per_clk = 2, .latency = 1}, {.start = 500});
+    EXPECT_EQ(tests::quads_of(bench.sink.values()), tests::counting(100));
+    EXPECT_GT(bench.unit.activity_times()[static_cast<std::size_t>(sim::Activity::blocked)], 450'000U);
+}
+
+TEST(EarlyDepthTest, RejectedQuadsTakeTheirTurnToo) {
+    tests::QuadPass pass;
+    const std::vector<pipeline::DepthCode> depth = surface(pass, 0.5F);
+    pass.context.read_only_depth = &depth;
+    for (std::uint32_t i = 0; i < 12; ++i) pass.quad(i * 2, 0, 15, i == 11 ? 0.1F : 0.9F);
+    const Bench bench(pass, {.quads_per_clk = 4, .latency = 1});
+    EXPECT_EQ(bench.sink.cycles(), (Cycles{4})); // the third group of four leaves at cycle 3
+}
+
+} // namespace

@@ -44,6 +44,10 @@ class ChannelBase {
     std::uint64_t received() const { return received_; }
     bool empty() const { return sent_ == received_; }
     bool full() const { return size() >= config_.capacity; }
+    /// Messages sent and not received before the present instant: what the sender can know, whatever the order of ticks.
+    std::uint64_t outstanding() const {
+        return sent_ - (receive_time_ == simulation_->now() ? received_before_ : received_);
+    }
 
   protected:
     ChannelBase(std::string name, ChannelConfig config, Component& sender, Component& receiver);
@@ -181,6 +185,8 @@ class Out {
     bool ready() { return linked().ready(); }
     /// ready() must be true.
     void send(const T& message) { linked().send(message); }
+    /// Messages sent and not received before this edge.
+    std::uint64_t outstanding() const { return linked().outstanding(); }
     const ChannelBase* channel() const { return channel_; }
 
   private:

@@ -67,12 +67,16 @@ bool FragmentScheduler::choose_pipe(const Quad& quad) {
 }
 
 bool FragmentScheduler::can_dispatch(const QuadTask& task) {
-    const Quad& quad = pass_->stream->quads[task.quad];
     if (payloads_ != nullptr && touches_kbuffer(task) && !payloads_->available()) {
-        ++stats_.slot_waits;
+        if (!std::exchange(out_of_slots_, true)) ++stats_.slot_waits;
         return false;
     }
-    return order_out.ready() && choose_pipe(quad);
+    if (!order_out.ready()) {
+        const bool full = order_out.outstanding() == order_out.channel()->config().capacity;
+        if (full && !std::exchange(out_of_places_, true)) ++stats_.reorder_waits;
+        return false;
+    }
+    return choose_pipe(pass_->stream->quads[task.quad]);
 }
 
 void FragmentScheduler::count_order(QuadTask& task) {
@@ -98,6 +102,8 @@ void FragmentScheduler::dispatch(QuadTask task, bool guarded) {
         progress_->fetch_add(progress_step, std::memory_order_relaxed);
     stats_.fragments += static_cast<std::uint64_t>(std::popcount(task.mask));
     order_out.send(task);
+    stats_.reorder_places_max.note(order_out.outstanding());
+    out_of_slots_ = out_of_places_ = false;
     next_pipe_ = (chosen_pipe_ + 1) % static_cast<std::uint32_t>(pipes_out.size());
     pipes_out[chosen_pipe_].send(task);
 }
@@ -143,7 +149,7 @@ bool FragmentScheduler::at_batch_boundary(const QuadTask& task) const {
 // follow the quads already dispatched, and later quads follow at once.
 bool FragmentScheduler::advance_flush(bool& progress) {
     if (flush_state_ == FlushState::draining) {
-        if (flush_.drain && in_flight_ != 0) return false;
+        if (flush_.drain && (in_flight_ != 0 || !side_buffer_.empty())) return false;
         flush_state_ = FlushState::commanding;
     }
     if (flush_state_ == FlushState::commanding) {
@@ -154,14 +160,15 @@ bool FragmentScheduler::advance_flush(bool& progress) {
             command.sequence = sequence_++;
             order_out.send(command);
             writeback_sent_ = true;
+            progress        = true;
         }
         command.kind = QuadKind::invalidate;
         for (; flush_.invalidate && invalidates_sent_ < pipes_out.size(); ++invalidates_sent_) {
             if (!pipes_out[invalidates_sent_].ready()) return false;
             pipes_out[invalidates_sent_].send(command);
+            progress = true;
         }
         flush_state_ = FlushState::acknowledging;
-        progress     = true;
     }
     if (flush_.drain && flush_.writeback && acknowledged_ < commits_in.size()) return false;
     flush_state_ = FlushState::none;

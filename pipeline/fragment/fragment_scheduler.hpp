@@ -21,8 +21,8 @@ namespace pipeline {
 
 struct FragmentSchedulerStats {
     sim::Counter quads, fragments, bypassed, true_conflicts, false_conflicts, inserted, overflow_stalls, order_waits,
-        slot_waits, flushes, drain_cycles;
-    sim::HighWater waiting_max;
+        slot_waits, reorder_waits, flushes, drain_cycles;
+    sim::HighWater waiting_max, reorder_places_max;
     sim::Histogram waiting, residence, service_interval;
 
     static constexpr auto fields() {
@@ -36,10 +36,12 @@ struct FragmentSchedulerStats {
             sim::field<&S::inserted>("Quads put into the side buffer").unit("quads"),
             sim::field<&S::overflow_stalls>("Times the rasterizer was stalled by a full side buffer").unit("stalls"),
             sim::field<&S::order_waits>("Quads held because an older quad of their key was waiting").unit("quads"),
-            sim::field<&S::slot_waits>("Times no payload slot was free").unit("stalls"),
+            sim::field<&S::slot_waits>("Times dispatch stopped because no payload slot was free").unit("stalls"),
+            sim::field<&S::reorder_waits>("Times dispatch stopped because the reorder buffer was full").unit("stalls"),
             sim::field<&S::flushes>("Flushes between batches").unit("flushes"),
             sim::field<&S::drain_cycles>("Cycles from the start to the end of those flushes").unit("cycles"),
             sim::field<&S::waiting_max>("Most quads in the side buffer").unit("quads"),
+            sim::field<&S::reorder_places_max>("Most places of the reorder buffer taken").unit("quads"),
             sim::field<&S::waiting>("Side buffer occupancy, sampled at insertion").unit("quads"),
             sim::field<&S::residence>("Time from insertion to dispatch").unit("cycles"),
             sim::field<&S::service_interval>("Time from dispatch to commit (L_rw)").unit("cycles")};
@@ -102,7 +104,8 @@ class FragmentScheduler final : public sim::Component {
     bool                       rescan_    = false; ///< something was released since the last fruitless scan
     std::uint32_t              next_pipe_ = 0;
     std::uint32_t              chosen_pipe_ = 0; ///< ready at this edge, found by choose_pipe()
-    bool                       overflowing_ = false;
+    // The present stall has been counted.
+    bool                       overflowing_ = false, out_of_slots_ = false, out_of_places_ = false;
     std::uint32_t              sequence_  = 0;
     std::uint32_t              in_flight_ = 0; ///< dispatched and not committed; with `tracked_` only
     FlushState                 flush_state_  = FlushState::none;

@@ -22,7 +22,6 @@ sim::Activity ReorderBuffer::tick() {
             done_[completion.sequence & mask] = static_cast<std::uint8_t>(complete | completion.mask);
             progress                          = true;
         }
-    stats_.occupancy_max.note(order_in.channel()->size());
     for (std::uint32_t n = 0; n < params_.retire_per_clk; ++n) {
         const QuadTask* head = order_in.peek();
         if (head == nullptr) break;
@@ -35,6 +34,7 @@ sim::Activity ReorderBuffer::tick() {
         if (!command) task.mask = static_cast<std::uint8_t>(std::exchange(done, 0) & 0xF);
         progress = true;
         if (!command && task.mask == 0) {
+            CHECK_MSG(task.slot == no_slot, "a quad that holds a payload slot must reach its ROP, which gives it back");
             ++stats_.dropped;
             continue;
         }

@@ -28,14 +28,12 @@ struct ReorderBufferParams {
 static_assert(sim::fully_described<ReorderBufferParams>);
 
 struct ReorderBufferStats {
-    sim::Counter   retired, dropped;
-    sim::HighWater occupancy_max;
+    sim::Counter retired, dropped;
 
     static constexpr auto fields() {
         using S = ReorderBufferStats;
         return std::tuple{sim::field<&S::retired>("Quads passed on in order").unit("quads"),
-                          sim::field<&S::dropped>("Quads with no living fragment, dropped").unit("quads"),
-                          sim::field<&S::occupancy_max>("Most quads between dispatch and retirement").unit("quads")};
+                          sim::field<&S::dropped>("Quads with no living fragment, dropped").unit("quads")};
     }
 };
 static_assert(sim::fully_described<ReorderBufferStats>);

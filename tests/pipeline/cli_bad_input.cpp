@@ -1,0 +1,156 @@
+// What a user can get wrong ends with one line that says so, and with the exit status that fits.
+#include "tests/support/program_run.hpp"
+
+#include <algorithm>
+#include <gtest/gtest.h>
+
+namespace {
+
+using ropsim_test::run_program;
+using ropsim_test::TemporaryFolder;
+
+struct Mistake {
+    std::vector<std::string> arguments;
+    int status;
+    std::string says; ///< part of the line
+};
+
+void expect_one_line(const ropsim_test::ProgramOutcome& outcome, const Mistake& mistake) {
+    std::string command;
+    for (const std::string& argument : mistake.arguments) command += argument + " ";
+    EXPECT_EQ(outcome.status, mistake.status) << command << outcome.error;
+    EXPECT_EQ(outcome.out, "") << command;
+    EXPECT_TRUE(outcome.error.starts_with("ropsim: ")) << command << outcome.error;
+    EXPECT_EQ(std::count(outcome.error.begin(), outcome.error.end(), '\n'), 1) << command << outcome.error;
+    EXPECT_NE(outcome.error.find(mistake.says), std::string::npos) << command << outcome.error;
+}
+
+std::vector<std::string> compare_with(const std::string& option, const std::string& value) {
+    return {"compare", "gen:stack", "--size", "16x16", option, value};
+}
+
+class CliBadInput : public ::testing::TestWithParam<Mistake> {};
+
+TEST_P(CliBadInput, IsOneLineAndTheRightStatus) { expect_one_line(run_program(GetParam().arguments), GetParam()); }
+
+INSTANTIATE_TEST_SUITE_P(
+    Arguments, CliBadInput,
+    ::testing::Values(Mistake{{}, 2, "expected a subcommand: compare, run, describe"},
+                      Mistake{{"compar"}, 2, "did you mean 'compare'?"}, Mistake{{"compare"}, 2, "scene is required"},
+                      Mistake{{"compare", "gen:stack", "--desings", "x"}, 2, "did you mean '--designs'?"},
+                      Mistake{{"compare", "gen:stack", "more"}, 2, "unexpected argument 'more'"},
+                      Mistake{{"compare", "gen:stack", "--size"}, 2, "--size"},
+                      Mistake{{"run", "gen:stack", "--timeline"}, 2, "--timeline requires --out"},
+                      Mistake{{"run", "gen:stack", "--designs", "blender"}, 2, "did you mean '--design'?"},
+                      Mistake{{"describe", "scorebord"}, 1, "did you mean 'scoreboard'?"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Values, CliBadInput,
+    ::testing::Values(Mistake{compare_with("--k", "0"), 1, "k: expected integer 1 to 64, got 0"},
+                      Mistake{compare_with("--k", "65"), 1, "k: expected integer 1 to 64, got 65"},
+                      Mistake{compare_with("--k", "four"), 1, "k: expected integer 1 to 64"},
+                      Mistake{compare_with("--entry", "rgb"), 1, "did you mean 'rgbz'?"},
+                      Mistake{{"compare", "gen:stack", "--size", "0x0"}, 1, "--size: expected WIDTHxHEIGHT"},
+                      Mistake{{"compare", "gen:stack", "--size", "100000x100000"}, 1, "1 to 16384"},
+                      Mistake{{"compare", "gen:stack", "--size", "16384x16384", "--k", "64"}, 1, "memory"},
+                      Mistake{{"compare", "gen:stack", "--size", "-4x4"}, 1, "--size"},
+                      Mistake{compare_with("--designs", "blendr"), 1, "did you mean 'blender'?"},
+                      Mistake{compare_with("--designs", "blender,blender"), 1, "named twice"},
+                      Mistake{compare_with("--designs", ","), 1, "separated by commas"},
+                      Mistake{compare_with("--gpu", "neutrl"), 1, "did you mean 'neutral'?"},
+                      Mistake{compare_with("--workload", "transparancy"), 1, "did you mean 'transparency'?"},
+                      Mistake{compare_with("--set", "rop.quue=3"), 1, "did you mean 'rop.queue'?"},
+                      Mistake{compare_with("--set", "rop.queue"), 1, "expected SECTION.KEY=VALUE"},
+                      Mistake{compare_with("--set", "rop.queue=many"), 1, "rop.queue"},
+                      Mistake{compare_with("--set", "workload.opcity=1"), 1, "did you mean 'opacity'?"},
+                      Mistake{compare_with("--threads", "0"), 1, "--threads: expected 1 to 1024"},
+                      Mistake{compare_with("--seed", "-1"), 1, "--seed"},
+                      Mistake{compare_with("--camera", "7"), 1, "camera '7'"},
+                      Mistake{compare_with("--camera", "1,2,3"), 1, "ex,ey,ez,tx,ty,tz,fovy"},
+                      Mistake{{"compare", "gen:stak"}, 1, "did you mean 'stack'?"}));
+
+// A triangle as glTF, so that one thing at a time can be made wrong.
+std::string triangle(const std::string& buffer, int index_count, int largest_count, const std::string& length) {
+    return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],
+"buffers":[{"byteLength":)" +
+           length + R"(,"uri":")" + buffer + R"("}],
+"bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":6}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":)" +
+           std::to_string(largest_count) +
+           R"(,"type":"VEC3","min":[0,0,0],"max":[1,1,0]},
+{"bufferView":1,"componentType":5123,"count":)" +
+           std::to_string(index_count) + R"(,"type":"SCALAR"}]})";
+}
+
+std::string bytes_of(const std::vector<float>& positions, const std::vector<std::uint16_t>& indices) {
+    std::string bytes(reinterpret_cast<const char*>(positions.data()), positions.size() * 4);
+    return bytes.append(reinterpret_cast<const char*>(indices.data()), indices.size() * 2);
+}
+
+class CliBadScene : public ::testing::Test {
+  protected:
+    void expect_refused(const std::string& file) {
+        const std::string path = (folder.path() / file).string();
+        const std::vector<std::string> arguments{"compare", path, "--size", "16x16", "--no-images"};
+        expect_one_line(run_program(arguments), {arguments, 1, file});
+    }
+    void write(const std::string& name, const std::string& text) {
+        ropsim_test::write_text(folder.path() / name, text);
+    }
+    TemporaryFolder folder;
+    const std::vector<float> good{0, 0, 0, 1, 0, 0, 0, 1, 0};
+};
+
+TEST_F(CliBadScene, NoFile) { expect_refused("none.glb"); }
+
+TEST_F(CliBadScene, NoGltf) {
+    write("text.glb", "this is no scene");
+    write("text.gltf", "this is no scene");
+    write("empty.glb", "");
+    for (const char* file : {"text.glb", "text.gltf", "empty.glb"}) expect_refused(file);
+}
+
+TEST_F(CliBadScene, TruncatedBinary) {
+    write("short.glb", std::string("glTF\x02\0\0\0\xff\xff\0\0", 12));
+    expect_refused("short.glb");
+}
+
+TEST_F(CliBadScene, MissingBuffer) {
+    write("missing.gltf", triangle("nowhere.bin", 3, 3, "42"));
+    expect_refused("missing.gltf");
+}
+
+TEST_F(CliBadScene, IndexOutOfRange) {
+    write("a.bin", bytes_of(good, {0, 1, 9}));
+    write("index.gltf", triangle("a.bin", 3, 3, "42"));
+    expect_refused("index.gltf");
+}
+
+TEST_F(CliBadScene, AccessorBeyondItsBuffer) {
+    write("a.bin", bytes_of(good, {0, 1, 2}));
+    write("accessor.gltf", triangle("a.bin", 3, 3000, "42"));
+    expect_refused("accessor.gltf");
+}
+
+TEST_F(CliBadScene, PositionsThatAreNoNumbers) {
+    std::vector<float> positions = good;
+    positions[4] = std::numeric_limits<float>::quiet_NaN();
+    write("a.bin", bytes_of(positions, {0, 1, 2}));
+    write("nan.gltf", triangle("a.bin", 3, 3, "42"));
+    expect_refused("nan.gltf");
+}
+
+TEST_F(CliBadScene, NoTriangles) {
+    write("nothing.gltf", R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[]}]})");
+    expect_refused("nothing.gltf");
+}
+
+TEST_F(CliBadScene, GoodOneIsAccepted) {
+    write("a.bin", bytes_of(good, {0, 1, 2}));
+    write("good.gltf", triangle("a.bin", 3, 3, "42"));
+    const auto outcome = run_program({"compare", (folder.path() / "good.gltf").string(), "--size", "16x16"});
+    EXPECT_EQ(outcome.status, 0) << outcome.error;
+}
+
+} // namespace

@@ -1,0 +1,139 @@
+// The built program's results: documented, the same for any number of threads, and pictures only when asked for.
+#include "reports/counter_reference.hpp"
+#include "reports/flatten.hpp"
+#include "tests/support/paths.hpp"
+#include "tests/support/program_run.hpp"
+#include "tests/support/schema.hpp"
+
+#include <algorithm>
+#include <gtest/gtest.h>
+
+namespace {
+
+using nlohmann::json;
+using ropsim_test::file_text;
+using ropsim_test::run_program;
+using ropsim_test::TemporaryFolder;
+
+std::vector<std::string> comparison(std::vector<std::string> further) {
+    std::vector<std::string> arguments{"compare", "gen:discs?n=200", "--size", "64x64", "--designs", "all"};
+    arguments.insert(arguments.end(), further.begin(), further.end());
+    return arguments;
+}
+
+json json_of(const std::vector<std::string>& arguments) {
+    const auto outcome = run_program(arguments);
+    EXPECT_EQ(outcome.status, 0) << outcome.error;
+    EXPECT_EQ(outcome.error, "");
+    return json::parse(outcome.out);
+}
+
+TEST(CliResults, JsonIsOneDocumentThatFollowsTheSchema) {
+    const json schema = json::parse(file_text(ropsim_test::source_dir() / "reports/result.schema.json"));
+    EXPECT_EQ(ropsim_test::schema_violations(schema, json_of(comparison({"--json"}))), std::vector<std::string>());
+    EXPECT_EQ(ropsim_test::schema_violations(schema, json_of(comparison({"--json", "--workload", "opaque"}))),
+              std::vector<std::string>());
+}
+
+TEST(CliResults, EqualForAnyNumberOfThreads) {
+    json one = json_of(comparison({"--json", "--threads", "1"}));
+    json two = json_of(comparison({"--json", "--threads", "2"}));
+    one.erase("host");
+    two.erase("host");
+    EXPECT_EQ(one, two);
+}
+
+TEST(CliResults, FilesAreEqualForAnyNumberOfThreads) {
+    const TemporaryFolder one, two;
+    run_program(comparison({"--threads", "1", "--out", one.path().string()}));
+    run_program(comparison({"--threads", "2", "--out", two.path().string()}));
+    ASSERT_EQ(one.files(), two.files());
+    EXPECT_GT(one.files().size(), 8U);
+    for (const std::string& file : one.files())
+        if (file != "result.json" && file != "report.html") {
+            EXPECT_EQ(file_text(one.path() / file), file_text(two.path() / file)) << file;
+        }
+}
+
+TEST(CliResults, FileAndStandardOutputSayTheSame) {
+    const TemporaryFolder folder;
+    const json printed = json_of(comparison({"--json", "--no-images", "--out", folder.path().string()}));
+    EXPECT_EQ(json::parse(file_text(folder.path() / "result.json")), printed);
+}
+
+TEST(CliResults, EveryCounterHasAUnitAndAMeaning) {
+    const json result = json_of(comparison({"--json"}));
+    for (const auto& design : result["designs"])
+        for (const auto& stage : design["stages"].items())
+            for (const auto& [path, value] : reports::flatten(stage.value().value("counters", json::object()))) {
+                const sim::FieldInfo* info = reports::find_counter(stage.key(), path);
+                ASSERT_NE(info, nullptr) << stage.key() << "." << path;
+                EXPECT_FALSE(info->text.empty()) << stage.key() << "." << path;
+                EXPECT_FALSE(info->unit.empty()) << stage.key() << "." << path;
+            }
+}
+
+TEST(CliResults, RunPrintsCountersWithTheirMeaning) {
+    const auto outcome = run_program({"run", "gen:stack", "--size", "32x32", "--design", "blender"});
+    EXPECT_EQ(outcome.status, 0) << outcome.error;
+    EXPECT_NE(outcome.out.find("Fragments run through the blender's program"), std::string::npos);
+    EXPECT_NE(outcome.out.find("seed 1"), std::string::npos);
+    EXPECT_NE(outcome.out.find("Left out:"), std::string::npos);
+    EXPECT_EQ(outcome.out.find('\033'), std::string::npos) << "no colours outside a terminal";
+}
+
+// LD_DEBUG=libs names every library that the loader opens.
+TEST(CliResults, OpenImageIoIsLoadedOnlyForPictures) {
+    const TemporaryFolder folder;
+    const auto loads_oiio = [&](std::vector<std::string> arguments) {
+        ropsim_test::ProgramOptions options;
+        options.environment = {"LD_DEBUG=libs", "LD_DEBUG_OUTPUT=" + (folder.path() / "loader").string()};
+        EXPECT_EQ(run_program(arguments, options).status, 0);
+        bool found = false;
+        for (const std::string& file : folder.files())
+            if (file.starts_with("loader")) {
+                found = found || file_text(folder.path() / file).find("libOpenImageIO") != std::string::npos;
+                std::filesystem::remove(folder.path() / file);
+            }
+        return found;
+    };
+    const std::string out = (folder.path() / "out").string();
+    EXPECT_FALSE(loads_oiio({"compare", "gen:stack", "--size", "16x16"}));
+    EXPECT_FALSE(loads_oiio({"compare", "gen:stack", "--size", "16x16", "--no-images", "--out", out}));
+    EXPECT_TRUE(loads_oiio({"compare", "gen:stack", "--size", "16x16", "--out", out}));
+}
+
+TEST(CliResults, MissingImageModuleIsToldBeforeTheRun) {
+    const TemporaryFolder folder, modules;
+    ropsim_test::write_text(modules.path() / "ropsim_images.so", "no library");
+    ropsim_test::ProgramOptions options;
+    options.environment = {"ROPSIM_MODULE_DIR=" + modules.path().string()};
+    const auto outcome = run_program({"compare", "gen:stack", "--out", folder.path().string()}, options);
+    EXPECT_EQ(outcome.status, 1);
+    EXPECT_NE(outcome.error.find("use --no-images"), std::string::npos) << outcome.error;
+    EXPECT_EQ(std::count(outcome.error.begin(), outcome.error.end(), '\n'), 1) << outcome.error;
+}
+
+TEST(CliResults, VersionAndHelp) {
+    EXPECT_TRUE(run_program({"--version"}).out.starts_with("ropsim "));
+    for (const char* command : {"compare", "run", "describe"}) {
+        const auto outcome = run_program({command, "--help"});
+        EXPECT_EQ(outcome.status, 0);
+        EXPECT_NE(outcome.out.find("Examples:"), std::string::npos) << command;
+        EXPECT_NE(outcome.out.find(std::string("Usage: ropsim ") + command), std::string::npos) << outcome.out;
+    }
+}
+
+TEST(CliResults, DescribeKnowsEveryTopicAndEveryNameInIt) {
+    for (const char* topic : {"gpus", "designs", "programs", "workloads", "generators", "params", "stats"}) {
+        const auto names = run_program({"describe", "--names", topic});
+        EXPECT_EQ(names.status, 0);
+        ASSERT_FALSE(names.out.empty()) << topic;
+        const std::string first = names.out.substr(0, names.out.find('\n'));
+        EXPECT_EQ(run_program({"describe", first}).status, 0) << first;
+        const json list = json_of({"describe", topic, "--json"});
+        EXPECT_EQ(list.size(), static_cast<std::size_t>(std::count(names.out.begin(), names.out.end(), '\n'))) << topic;
+    }
+}
+
+} // namespace

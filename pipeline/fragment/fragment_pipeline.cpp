@@ -11,8 +11,10 @@ constexpr std::uint32_t ceil_div(std::uint32_t value, std::uint32_t by) {
     return (value + by - 1) / by;
 }
 
-// Peeled layers lie in an address range of their own, in 64-byte lines of 4x4 depths.
+// Peeled layers lie in an address range of their own, in 64-byte lines of 4x4 depths. Each pass reads another layer, whose
+// lines must not be taken for those of the layer before: 2^24 lines are those of the largest surface.
 constexpr std::uint64_t layer_lines = std::uint64_t{1} << 40U;
+constexpr std::uint64_t lines_of_layer = std::uint64_t{1} << 24U;
 
 } // namespace
 
@@ -23,9 +25,9 @@ FragmentPipeline::FragmentPipeline(sim::Context context, std::uint16_t pipe, con
       payloads_(payloads), program_targets_(site != nullptr ? pass.program->targets() : 0),
       line_targets_(site == nullptr ? 0 : site->atomic_reads ? program_targets_ : 1),
       l1_(texture, site != nullptr && !site->bypass_l1 ? line_targets_ : 0), threads_(params.quads_in_flight),
-      block_chain_(site != nullptr ? pass.layout.blocks() : 0, nobody),
-      line_chain_(texture.l1_bytes / TextureParams::line_bytes + 1, nobody), shading_(params.quads_in_flight),
-      finishing_(params.quads_in_flight), unsent_(params.quads_in_flight) {
+      block_chain_(site != nullptr ? pass.layout.blocks() : 0),
+      line_chain_(texture.l1_bytes / TextureParams::line_bytes + 1), shading_(params.quads_in_flight),
+      hits_(params.quads_in_flight), finished_(params.quads_in_flight), unsent_(params.quads_in_flight) {
     for (std::uint32_t thread = params.quads_in_flight; thread > 0; --thread)
         free_threads_.push_back(static_cast<std::uint16_t>(thread - 1));
     thread_limit_ = params.quads_in_flight;
@@ -40,7 +42,8 @@ FragmentPipeline::FragmentPipeline(sim::Context context, std::uint16_t pipe, con
 
 void FragmentPipeline::begin_pass(std::uint32_t registers_per_fragment) {
     l1_.drop_kbuffer_lines();
-    draw_         = ~std::uint32_t{0};
+    draw_ = ~std::uint32_t{0};
+    ++passes_;
     thread_limit_ = std::clamp(params_.registers / std::max(registers_per_fragment, 1U), 1U, params_.quads_in_flight);
 }
 
@@ -86,6 +89,7 @@ void FragmentPipeline::start(const QuadTask& task) {
     // The program's scalar operations run four wide, for the four fragments of the quad side by side.
     if (task.slot != no_slot) alu += ceil_div(pass_->program->cost().operations, 4 * params_.alu_per_clk);
     issue_free_ = cycle() + alu;
+    thread.alu  = alu;
     stats_.issue_cycles += alu;
     ++stats_.quads;
     stats_.fragments += static_cast<std::uint64_t>(std::popcount(task.mask));
@@ -101,7 +105,7 @@ std::uint64_t FragmentPipeline::fetch_line(const Thread& thread) const {
     const bool layered = pass_->behind != nullptr;
     if (layered && thread.fetch <= (textured ? 1 : 0)) {
         const Quad& quad = pass_->stream->quads[thread.task.quad];
-        return layer_lines + pass_->layout.tile_of(quad.x, quad.y);
+        return layer_lines + passes_ * lines_of_layer + pass_->layout.tile_of(quad.x, quad.y);
     }
     return ~std::uint64_t{0};
 }
@@ -122,8 +126,7 @@ void FragmentPipeline::fetch_textures(std::uint16_t index) {
         }
         if (found != TextureCache::none) { // joins the pending miss
             ++stats_.l1.texture_hits;
-            thread.next        = line_chain_[found];
-            line_chain_[found] = index;
+            append(line_chain_[found], index);
             return;
         }
         ++stats_.l1.texture_misses;
@@ -134,27 +137,38 @@ void FragmentPipeline::fetch_textures(std::uint16_t index) {
     shaded(index);
 }
 
+void FragmentPipeline::append(Chain& chain, std::uint16_t thread) {
+    (chain.first == nobody ? chain.first : threads_[chain.last].next) = thread;
+    chain.last            = thread;
+    threads_[thread].next = nobody;
+}
+
 void FragmentPipeline::texture_arrived(std::uint16_t index) {
-    Thread& thread = threads_[index];
-    ++thread.fetch;
-    if (thread.line != TextureCache::none) {
-        l1_.filled(thread.line);
-        std::uint16_t waiting     = std::exchange(line_chain_[thread.line], nobody);
-        thread.line               = TextureCache::none;
-        while (waiting != nobody) {
-            const std::uint16_t next = std::exchange(threads_[waiting].next, nobody);
-            ++threads_[waiting].fetch;
-            fetch_textures(waiting);
-            waiting = next;
-        }
+    Chain               waiting;
+    const std::uint32_t line = std::exchange(threads_[index].line, TextureCache::none);
+    if (line != TextureCache::none) {
+        l1_.filled(line);
+        waiting = std::exchange(line_chain_[line], {});
     }
+    fetched(index);
+    for (std::uint16_t thread = waiting.first; thread != nobody;) {
+        const std::uint16_t next = threads_[thread].next;
+        fetched(thread);
+        thread = next;
+    }
+}
+
+void FragmentPipeline::fetched(std::uint16_t index) {
+    ++threads_[index].fetch;
     fetch_textures(index);
 }
 
 // All read-only fetches are there: the ALU part follows, in order of arrival.
 void FragmentPipeline::shaded(std::uint16_t index) {
     const Thread& thread = threads_[index];
-    sim::Cycle    ready  = std::max(cycle(), texture_free_) + params_.latency + (thread.fetch > 0 ? texture_.hit_latency : 0);
+    const bool    filtered = thread.fetch > 0;
+    sim::Cycle    ready    = filtered ? std::max(cycle(), texture_free_) + texture_.hit_latency : cycle();
+    ready += params_.latency + thread.alu - 1;
     if (!shading_.empty()) ready = std::max(ready, shading_.back().ready);
     shading_.push({index, ready});
 }
@@ -173,14 +187,22 @@ void FragmentPipeline::run_program(const QuadTask& task) {
 void FragmentPipeline::after_values(std::uint16_t index) {
     const QuadTask& task = threads_[index].task;
     if (task.slot != no_slot) run_program(task);
-    const sim::Cycle ready = cycle() + 1;
-    finishing_.push({index, finishing_.empty() ? ready : std::max(ready, finishing_.back().ready)});
+    finished_.push(index);
+}
+
+bool FragmentPipeline::take_hits() {
+    bool progress = false;
+    for (; !hits_.empty() && hits_.front().ready <= cycle(); progress = true) {
+        after_values(hits_.front().thread);
+        hits_.pop();
+    }
+    return progress;
 }
 
 bool FragmentPipeline::finish_one() {
-    if (finishing_.empty() || finishing_.front().ready > cycle() || !done_out.ready()) return false;
-    const std::uint16_t index = finishing_.front().thread;
-    finishing_.pop();
+    if (finished_.empty() || !done_out.ready()) return false;
+    const std::uint16_t index = finished_.front();
+    finished_.pop();
     done_out.send({threads_[index].task.sequence, threads_[index].task.mask});
     free_threads_.push_back(index);
     return true;
@@ -199,12 +221,12 @@ void FragmentPipeline::lookup_targets(std::uint16_t index) {
     texture_free_ = std::max(texture_free_, cycle()) + texture_.cycles_per_rgba32f * program_targets_;
     stats_.texture_cycles += texture_.cycles_per_rgba32f * program_targets_;
     ++stats_.kbuffer_reads;
-    if (site_->bypass_l1 || !l1_.enabled()) {
+    if (!uses_l1()) {
         stats_.l1.kbuffer_misses += parts;
         return;
     }
     std::uint64_t pending = 0;
-    for (std::uint16_t other = block_chain_[thread.block]; other != nobody; other = threads_[other].next)
+    for (std::uint16_t other = block_chain_[thread.block].first; other != nobody; other = threads_[other].next)
         if (threads_[other].generation == thread.generation) pending |= threads_[other].own;
     for (std::uint32_t part = 0; part < parts; ++part) {
         const std::uint64_t targets = part_mask << part;
@@ -249,11 +271,10 @@ bool FragmentPipeline::read_kbuffer_of_next() {
         lookup_targets(index);
         Thread& thread = threads_[index];
         if ((thread.own | thread.merged) == 0) {
-            after_values(index);
+            hits_.push({index, texture_free_ + texture_.hit_latency});
             return true;
         }
-        thread.next                = block_chain_[thread.block];
-        block_chain_[thread.block] = index;
+        append(block_chain_[thread.block], index);
         if (thread.own != 0) read_in_hand_ = index;
     }
     if (read_in_hand_ && send_read(*read_in_hand_)) {
@@ -263,15 +284,8 @@ bool FragmentPipeline::read_kbuffer_of_next() {
     return progress;
 }
 
-void FragmentPipeline::unchain(std::uint16_t index) {
-    std::uint16_t* link = &block_chain_[threads_[index].block];
-    while (*link != index) link = &threads_[*link].next;
-    *link                = threads_[index].next;
-    threads_[index].next = nobody;
-}
-
 void FragmentPipeline::fill_l1(const Thread& thread, std::uint64_t targets) {
-    if (site_->bypass_l1 || !l1_.enabled() || thread.generation != l1_.generation()) return;
+    if (!uses_l1() || thread.generation != l1_.generation()) return;
     for (std::uint32_t part = 0; part < program_targets_ / line_targets_; ++part) {
         const std::uint32_t first = part * line_targets_;
         if ((targets >> first & 1) == 0) continue;
@@ -285,25 +299,31 @@ void FragmentPipeline::fill_l1(const Thread& thread, std::uint64_t targets) {
     }
 }
 
-void FragmentPipeline::give_to_waiting(std::uint16_t from, std::uint64_t targets) {
-    const Thread& source = threads_[from];
-    for (std::uint16_t other = block_chain_[source.block]; other != nobody;) {
+void FragmentPipeline::give_to_waiting(const Thread& from, std::uint64_t targets) {
+    const std::uint32_t slot = from.task.slot;
+    for (std::uint16_t other = block_chain_[from.block].first; other != nobody; other = threads_[other].next) {
         Thread&             thread = threads_[other];
-        const std::uint16_t next   = thread.next;
-        const std::uint64_t shared = thread.generation == source.generation ? thread.merged & targets : 0;
+        const std::uint64_t shared = thread.generation == from.generation ? thread.merged & targets : 0;
         for (std::uint64_t left = shared; left != 0; left &= left - 1) {
             const auto target = static_cast<std::uint32_t>(std::countr_zero(left));
             for (std::uint32_t pixel = 0; pixel < 4; ++pixel)
-                payloads_->sample(thread.task.slot, pixel, target, payloads_->values(source.task.slot, pixel) + target * 4,
-                                  payloads_->version(source.task.slot, pixel, target),
-                                  (*payloads_)[source.task.slot].last_read);
+                payloads_->sample(thread.task.slot, pixel, target, payloads_->values(slot, pixel) + target * 4,
+                                  payloads_->version(slot, pixel, target), (*payloads_)[slot].last_read);
         }
         thread.merged &= ~shared;
-        if (shared != 0 && (thread.own | thread.merged) == 0) {
-            unchain(other);
-            after_values(other);
-        }
-        other = next;
+    }
+}
+
+// Lets the threads go that have all they asked for. Only now, because the program overwrites the values it works on.
+void FragmentPipeline::finish_complete(std::uint32_t block) {
+    Chain& chain = block_chain_[block];
+    for (std::uint16_t thread = std::exchange(chain, {}).first; thread != nobody;) {
+        const std::uint16_t next = threads_[thread].next;
+        if ((threads_[thread].own | threads_[thread].merged) == 0)
+            after_values(thread);
+        else
+            append(chain, thread);
+        thread = next;
     }
 }
 
@@ -311,10 +331,21 @@ void FragmentPipeline::kbuffer_arrived(std::uint16_t index) {
     Thread&             thread  = threads_[index];
     const std::uint64_t targets = std::exchange(thread.own, 0);
     fill_l1(thread, targets);
-    give_to_waiting(index, targets);
-    if (thread.merged != 0) return;
-    unchain(index);
-    after_values(index);
+    give_to_waiting(thread, targets);
+    finish_complete(thread.block);
+}
+
+// Values on their way were perhaps sampled before the store: later quads must not join them, nor find them in L1.
+void FragmentPipeline::invalidate(std::uint32_t block) {
+    l1_.drop_kbuffer_block(block, program_targets_ / line_targets_);
+    ++stats_.l1.invalidations;
+    bool orphaned = false;
+    for (std::uint16_t thread = block_chain_[block].first; thread != nobody; thread = threads_[thread].next)
+        if (threads_[thread].generation == l1_.generation()) {
+            threads_[thread].generation = orphans_;
+            orphaned                    = true;
+        }
+    if (orphaned) --orphans_;
 }
 
 bool FragmentPipeline::take_answers() {
@@ -331,14 +362,13 @@ bool FragmentPipeline::take_answers() {
         }
     for (auto& port : invalidations_in)
         while (port.peek() != nullptr) {
-            l1_.drop_kbuffer_block(port.receive().block, program_targets_ / line_targets_);
-            ++stats_.l1.invalidations;
+            invalidate(port.receive().block);
             progress = true;
         }
     return progress;
 }
 
-bool FragmentPipeline::issue_next(bool& blocked) {
+bool FragmentPipeline::issue_next() {
     const QuadTask* input = quads_in.peek();
     if (input == nullptr) return false;
     if (input->kind == QuadKind::invalidate) {
@@ -347,41 +377,46 @@ bool FragmentPipeline::issue_next(bool& blocked) {
         quads_in.pop();
         return true;
     }
-    blocked = params_.quads_in_flight - free_threads_.size() >= thread_limit_;
-    if (blocked || issue_free_ > cycle()) return false;
+    if (issue_free_ > cycle() || params_.quads_in_flight - free_threads_.size() >= thread_limit_) return false;
     start(quads_in.receive());
     return true;
 }
 
-sim::Cycle FragmentPipeline::next_event() const {
+bool FragmentPipeline::send_texture_request() {
+    if (unsent_.empty() || !textures_out.ready()) return false;
+    const Thread& thread = threads_[unsent_.front()];
+    textures_out.send({fetch_line(thread) * TextureParams::line_bytes, TextureParams::line_bytes, unsent_.front(),
+                       pass_->draw_of(thread.task.quad), MemoryClient::texture, false});
+    unsent_.pop();
+    return true;
+}
+
+// The next edge at which time alone lets something happen.
+sim::Cycle FragmentPipeline::next_event() {
     sim::Cycle next = ~sim::Cycle{0};
     auto       note = [&next, this](sim::Cycle at) {
         if (at > cycle()) next = std::min(next, at);
     };
-    if (!finishing_.empty()) note(finishing_.front().ready);
-    if (!shading_.empty()) note(std::max(shading_.front().ready, texture_free_));
-    note(issue_free_);
+    if (!hits_.empty()) note(hits_.front().ready);
+    if (!shading_.empty() && !read_in_hand_) {
+        const bool reads = threads_[shading_.front().thread].task.slot != no_slot;
+        note(reads ? std::max(shading_.front().ready, texture_free_) : shading_.front().ready);
+    }
+    if (quads_in.peek() != nullptr) note(issue_free_);
     return next;
 }
 
 sim::Activity FragmentPipeline::tick() {
     bool progress = take_answers();
-    progress |= finish_one();
+    progress |= take_hits();
     progress |= read_kbuffer_of_next();
-    bool full = false;
-    progress |= issue_next(full);
-    if (!unsent_.empty() && textures_out.ready()) {
-        const Thread&       thread = threads_[unsent_.front()];
-        const std::uint64_t line   = fetch_line(thread);
-        textures_out.send({line * TextureParams::line_bytes, TextureParams::line_bytes, unsent_.front(),
-                           pass_->draw_of(thread.task.quad), MemoryClient::texture, false});
-        unsent_.pop();
-        progress = true;
-    }
+    progress |= finish_one();
+    progress |= issue_next();
+    progress |= send_texture_request();
     if (progress) return sim::Activity::busy;
     if (const sim::Cycle next = next_event(); next != ~sim::Cycle{0}) wake_at(next);
     if (free_threads_.size() == params_.quads_in_flight) return sim::Activity::starved;
-    return read_in_hand_ ? sim::Activity::blocked : sim::Activity::memory;
+    return read_in_hand_ || !finished_.empty() || !unsent_.empty() ? sim::Activity::blocked : sim::Activity::memory;
 }
 
 } // namespace pipeline

@@ -2,7 +2,9 @@
 //
 // Modelled: W quads in flight, fewer when the shader's registers run out; ALU issue rate; one texture unit with its L1;
 // pending lines are merged; misses go to memory (textures) or to the ROP partition that owns the pixel (k-buffer); results
-// leave one per cycle, out of order. A k-buffer value is sampled when its L1 lookup hits, or when the memory side serves it.
+// leave one per cycle, out of order. A k-buffer value is sampled when its L1 lookup hits, or when the memory side serves it;
+// a hit is available after the hit latency, like any texel. A miss on its way when its line is invalidated serves whoever
+// waits for it already, and is not kept.
 // Not modelled: individual instructions; branches.
 // Source: specification 004, sections 7, 7.1 (t_disp, t_rd, t_done; read value rule).
 #pragma once
@@ -36,7 +38,7 @@ struct FragmentParams {
             sim::field<&P::pipes>("Quad pipelines, four fragments wide (P)").unit("pipes").range(1, 64),
             sim::field<&P::quads_in_flight>("Quads in flight per pipe (W)").unit("quads").range(1, 4096),
             sim::field<&P::alu_per_clk>("Vector instructions issued per cycle for a quad").unit("instructions").range(1, 64),
-            sim::field<&P::latency>("Cycles through an empty pipe, without texture reads").unit("cycles").range(1, 10000),
+            sim::field<&P::latency>("Cycles through an empty pipe, without texture reads; a shader that issues for n cycles adds n - 1").unit("cycles").range(1, 10000),
             sim::field<&P::registers>("128-bit registers per fragment lane, shared by the quads in flight").unit("registers").range(1, 1 << 20)};
     }
 };
@@ -89,10 +91,15 @@ class FragmentPipeline final : public sim::Component {
         std::uint64_t own        = 0; ///< render targets asked for and not answered
         std::uint64_t merged     = 0; ///< render targets another thread has asked for
         std::uint32_t block      = 0;
-        std::uint32_t generation = 0;
+        std::uint32_t generation = 0; ///< of L1 when the lookup was made, or one of its own when the line was invalidated
+        std::uint32_t alu        = 0; ///< cycles its instructions need to issue
         std::uint32_t line       = TextureCache::none; ///< texture line this thread is filling
         std::uint8_t  fetch      = 0;                  ///< next of the quad's read-only fetches
         std::uint16_t next       = nobody;             ///< in the chain of threads that wait for one block or line
+    };
+    struct Chain { ///< of threads, the oldest first
+        std::uint16_t first = nobody;
+        std::uint16_t last  = nobody;
     };
     struct Timed {
         std::uint16_t thread = 0;
@@ -102,25 +109,31 @@ class FragmentPipeline final : public sim::Component {
     sim::Activity tick() override;
     bool          take_answers();
     bool          finish_one();
+    bool          take_hits();
     bool          read_kbuffer_of_next();
-    bool          issue_next(bool& blocked);
+    bool          issue_next();
+    bool          send_texture_request();
+    void          invalidate(std::uint32_t block);
     void          start(const QuadTask& task);
     void          fetch_textures(std::uint16_t thread);
     std::uint64_t fetch_line(const Thread& thread) const;
     void          texture_arrived(std::uint16_t thread);
+    void          fetched(std::uint16_t thread);
     void          shaded(std::uint16_t thread);
     void          after_values(std::uint16_t thread);
     void          lookup_targets(std::uint16_t index);
     bool          send_read(std::uint16_t index);
     void          kbuffer_arrived(std::uint16_t index);
-    void          give_to_waiting(std::uint16_t from, std::uint64_t targets);
+    void          give_to_waiting(const Thread& from, std::uint64_t targets);
+    void          finish_complete(std::uint32_t block);
     void          fill_l1(const Thread& thread, std::uint64_t targets);
-    void          unchain(std::uint16_t index);
+    bool          uses_l1() const { return !site_->bypass_l1 && l1_.enabled(); } ///< for the k-buffer
+    void          append(Chain& chain, std::uint16_t thread);
     void          run_program(const QuadTask& task);
     bool          is_behind(float depth, QuadId quad, std::size_t pixel) const;
     std::uint8_t  behind_layer(const QuadTask& task) const;
     std::uint64_t all_targets() const { return program_targets_ == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << program_targets_) - 1; }
-    sim::Cycle    next_event() const;
+    sim::Cycle    next_event();
 
     std::uint16_t              pipe_;
     FragmentParams             params_;
@@ -136,15 +149,18 @@ class FragmentPipeline final : public sim::Component {
     std::vector<Thread>        threads_;
     std::vector<std::uint16_t> free_threads_;
     std::uint32_t              thread_limit_ = 0;
-    std::vector<std::uint16_t> block_chain_; ///< first thread that waits for a block
-    std::vector<std::uint16_t> line_chain_;  ///< first thread that waits for a texture line of L1
+    std::vector<Chain>         block_chain_; ///< threads that wait for lines of a block
+    std::vector<Chain>         line_chain_;  ///< threads that wait for a texture line of L1
     FixedQueue<Timed>          shading_;     ///< in the ALUs, in order
-    FixedQueue<Timed>          finishing_;   ///< values complete, result on its way out
+    FixedQueue<Timed>          hits_;        ///< all render targets hit L1, values on their way through the texture unit
+    FixedQueue<std::uint16_t>  finished_;    ///< shader done, result waits for the way out
     FixedQueue<std::uint16_t>  unsent_;      ///< texture requests the link had no room for
     std::optional<std::uint16_t> read_in_hand_; ///< looked up, request not sent yet
     sim::Cycle                 issue_free_   = 0;
     sim::Cycle                 texture_free_ = 0;
     std::uint32_t              draw_         = ~std::uint32_t{0}; ///< of the youngest quad, for invalidate_on_draw
+    std::uint64_t              passes_       = 0;                 ///< begun so far
+    std::uint32_t              orphans_      = ~std::uint32_t{0}; ///< next generation of lines invalidated on their way
 };
 
 } // namespace pipeline

@@ -170,8 +170,7 @@ void PassGraph::add_clear(std::string name, std::vector<std::string> writes) {
 }
 
 void PassGraph::add_draw(std::string name, std::vector<std::string> reads, std::vector<std::string> writes,
-                         std::vector<std::uint32_t> draws, bool both_faces,
-                         pipeline::BlendMode blend) {
+                         std::vector<std::uint32_t> draws, bool both_faces, pipeline::BlendMode blend) {
     for (const std::uint32_t draw : draws) CHECK(draw < frame_.draws.size());
     CHECK(!contains(writes, kbuffer_surface) || frame_.program != nullptr);
     Pass pass;

@@ -222,7 +222,8 @@ TEST(GltfErrors, HugeImagesAreRefusedBeforeTheyAreDecoded) {
     file.json["meshes"][0]["primitives"][0]["material"] = 0;
     EXPECT_EQ(file.error(), "scene.gltf: image 0: expected at most 16384x16384 texels, got 65536x65536");
     file.json["bufferViews"][static_cast<std::size_t>(view)]["byteOffset"] = 2000000000;
-    EXPECT_EQ(file.error(), "scene.gltf: image 0: expected 29 bytes from byte 2000000000 within a buffer of 65 bytes");
+    EXPECT_EQ(file.error(),
+              "scene.gltf: bufferView 1: expected 29 bytes from byte 2000000000 within buffer 0 of 65 bytes");
 }
 
 TEST(GltfErrors, SparseElementsOutOfRange) {

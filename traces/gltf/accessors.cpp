@@ -58,20 +58,9 @@ std::uint32_t size_of(const VertexAttribute& attribute) {
 
 } // namespace
 
-std::span<const unsigned char> Accessors::view_bytes(std::uint32_t view, std::string_view place) const {
-    const auto& model = document_.model();
-    const auto& one = document_.at(model.bufferViews, static_cast<int>(view), place, "bufferView");
-    const auto where = fmt::format("bufferView {}", view);
-    const auto& buffer = document_.at(model.buffers, one.buffer, where, "buffer");
-    document_.require(one.byteLength <= buffer.data.size() && one.byteOffset <= buffer.data.size() - one.byteLength,
-                      where, "{} bytes from byte {} within buffer {} of {} bytes", one.byteLength, one.byteOffset,
-                      one.buffer, buffer.data.size());
-    return std::span(buffer.data).subspan(one.byteOffset, one.byteLength);
-}
-
 void Accessors::require_inside(const Elements& elements, std::size_t bytes_each, std::string_view place) const {
     const VertexAttribute& a = elements.attribute;
-    const std::size_t bytes = view_bytes(a.buffer, place).size();
+    const std::size_t bytes = document_.view_bytes(static_cast<int>(a.buffer), place).size();
     const bool fits = a.offset <= bytes && bytes_each <= bytes - a.offset &&
                       (bytes - a.offset - bytes_each) / a.stride >= elements.count - 1;
     document_.require(fits, place, "{} elements of {} bytes, {} apart, from byte {} within bufferView {} of {} bytes",
@@ -112,7 +101,7 @@ Accessors::Elements Accessors::elements(int index, const Wanted& wanted, std::st
 }
 
 std::vector<glm::vec4> Accessors::read(const Elements& elements, std::string_view place) const {
-    const auto bytes = std::as_bytes(view_bytes(elements.attribute.buffer, place));
+    const auto bytes = std::as_bytes(document_.view_bytes(static_cast<int>(elements.attribute.buffer), place));
     const pipeline::AttributeReader reader(bytes.data(), elements.attribute);
     std::vector<glm::vec4> values(elements.count);
     for (std::uint32_t i = 0; i < values.size(); ++i) values[i] = reader(i);
@@ -127,7 +116,7 @@ bool Accessors::lies_in_file(int index, std::string_view place) const {
 std::uint32_t Accessors::buffer_of_view(std::uint32_t view, std::string_view place) {
     const auto [entry, is_new] = buffer_of_view_.try_emplace(view, static_cast<std::uint32_t>(buffers_.size()));
     if (is_new) {
-        const auto bytes = std::as_bytes(view_bytes(view, place));
+        const auto bytes = std::as_bytes(document_.view_bytes(static_cast<int>(view), place));
         const auto& name = document_.model().bufferViews[view].name;
         buffers_.push_back({name.empty() ? fmt::format("bufferView {}", view) : name, {bytes.begin(), bytes.end()}, 0});
     }

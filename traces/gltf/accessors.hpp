@@ -68,7 +68,6 @@ class Accessors {
     void require_inside(const Elements& elements, std::size_t bytes_each, std::string_view place) const;
     void overlay(std::vector<glm::vec4>& values, const tinygltf::Accessor& accessor, const Elements& base,
                  std::string_view place) const;
-    std::span<const unsigned char> view_bytes(std::uint32_t view, std::string_view place) const;
     std::vector<glm::vec4> read(const Elements& elements, std::string_view place) const;
     std::uint32_t buffer_of_view(std::uint32_t view, std::string_view place);
 

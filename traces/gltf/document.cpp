@@ -143,6 +143,16 @@ void Document::fail(std::string_view place, std::string_view expected) const {
     throw sim::InputError(fmt::format("{}: {}: expected {}", name_, place, expected));
 }
 
+std::span<const unsigned char> Document::view_bytes(int view, std::string_view place) const {
+    const auto& one = at(model_.bufferViews, view, place, "bufferView");
+    const std::string where = fmt::format("bufferView {}", view);
+    const auto& buffer = at(model_.buffers, one.buffer, where, "buffer");
+    require(one.byteLength <= buffer.data.size() && one.byteOffset <= buffer.data.size() - one.byteLength, where,
+            "{} bytes from byte {} within buffer {} of {} bytes", one.byteLength, one.byteOffset, one.buffer,
+            buffer.data.size());
+    return std::span(buffer.data).subspan(one.byteOffset, one.byteLength);
+}
+
 void Document::note_unread_extensions() {
     for (const std::string& extension : model_.extensionsUsed)
         if (!is_read_extension(extension)) notes.push_back(fmt::format("extension {} is not read", extension));

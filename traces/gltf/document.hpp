@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <fmt/format.h>
+#include <span>
 #include <string>
 #include <string_view>
 #include <tiny_gltf.h>
@@ -40,6 +41,9 @@ class Document {
                 "the number of one of {} {}s, got {}", list.size(), what, index);
         return list[static_cast<std::size_t>(index)];
     }
+
+    /// The bytes of a bufferView, checked to lie in its buffer.
+    std::span<const unsigned char> view_bytes(int view, std::string_view place) const;
 
   private:
     void note_unread_extensions();

@@ -47,13 +47,7 @@ Bytes encoded_bytes(const Document& document, const tinygltf::Image& image, std:
         document.require(!image.image.empty(), place, "a readable file '{}'", image.uri);
         return image.image;
     }
-    const auto& model = document.model();
-    const auto& view = document.at(model.bufferViews, image.bufferView, place, "bufferView");
-    const auto& buffer = document.at(model.buffers, view.buffer, place, "buffer");
-    document.require(view.byteLength <= buffer.data.size() && view.byteOffset <= buffer.data.size() - view.byteLength,
-                     place, "{} bytes from byte {} within a buffer of {} bytes", view.byteLength, view.byteOffset,
-                     buffer.data.size());
-    return Bytes(buffer.data).subspan(view.byteOffset, view.byteLength);
+    return document.view_bytes(image.bufferView, place);
 }
 
 std::vector<std::uint8_t> as_rgba8(const tinygltf::Image& decoded) {

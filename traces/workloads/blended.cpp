@@ -56,7 +56,8 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const Blen
 } // namespace
 
 Workload blended_workload() {
-    return make_workload<BlendedParams>("blended", "every draw blended in submission order by the fixed-function ROP", build);
+    return make_workload<BlendedParams>("blended", "every draw blended in submission order by the fixed-function ROP",
+                                        build);
 }
 
 } // namespace traces

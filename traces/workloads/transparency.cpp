@@ -46,8 +46,9 @@ struct TransparencyParams {
             sim::field<&P::entry>("what a layer keeps: colour and depth, or depth"),
             sim::field<&P::transparent>("which draws are transparent: all, or those whose material is (the others are "
                                         "drawn first, with a depth buffer)"),
-            sim::field<&P::faces>("which faces of transparent draws are layers: both, as one sees through the front ones, or "
-                                  "those that the material shows"),
+            sim::field<&P::faces>(
+                "which faces of transparent draws are layers: both, as one sees through the front ones, or "
+                "those that the material shows"),
             sim::field<&P::opacity>("opacity of every layer").range(0.0F, 1.0F),
             sim::field<&P::background>("linear RGB behind everything").range(0.0F, 1.0F),
             sim::field<&P::depth_format>("format of the depth surface, where there is one"));

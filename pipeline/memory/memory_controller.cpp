@@ -1,5 +1,8 @@
 #include "pipeline/memory/memory_controller.hpp"
 
+#include <algorithm>
+#include <utility>
+
 namespace pipeline {
 
 namespace {
@@ -19,10 +22,10 @@ std::uint32_t answers_in_flight(const MemoryControllerParams& params) {
 } // namespace
 
 MemoryController::MemoryController(sim::Context context, const Params& params, const Share& share)
-    : Component(context),
+    : Component(std::move(context)),
       params_(params),
       share_(share),
-      channel_(params.dram, share.bandwidth, context.clock.period, params.queue),
+      channel_(params.dram, share.bandwidth, clock().period, params.queue),
       random_(simulation().random_for(name())),
       ports_{Port{&hub_in, &hub_out, FixedQueue<Answer>(answers_in_flight(params))},
              Port{&rop_in, &rop_out, FixedQueue<Answer>(answers_in_flight(params))}},

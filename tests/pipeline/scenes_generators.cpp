@@ -124,7 +124,8 @@ TEST(SceneGenerators, GrassIsInViewOfItsCamera) {
 
 TEST(SceneGenerators, BlobIsSeenWholeAndHasDepth) {
     const Drawn blob = draw("gen:blob?triangles=40000", 256, 256);
-    for (const auto& primitive : blob.stream.primitives) ASSERT_NE(primitive.fate, pipeline::PrimitiveFate::culled_outside);
+    for (const auto& primitive : blob.stream.primitives)
+        ASSERT_NE(primitive.fate, pipeline::PrimitiveFate::culled_outside);
     const auto counts = fragments_per_pixel(blob.stream);
     const auto covered = 256 * 256 - std::count(counts.begin(), counts.end(), 0U);
     EXPECT_GT(covered, 256 * 256 / 4);

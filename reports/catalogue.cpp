@@ -9,6 +9,7 @@
 #include "traces/generators.hpp"
 #include "traces/workloads.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <fstream>
 
@@ -89,6 +90,23 @@ CatalogueEntry field_entry(std::string topic, std::string name, const sim::Field
     return entry;
 }
 
+// Workloads share names; each name is listed once, with the workloads that have it and what it means to them.
+std::vector<CatalogueEntry> workload_parameters() {
+    std::vector<CatalogueEntry> entries;
+    for (const traces::Workload& workload : traces::workloads())
+        for (const sim::FieldInfo& field : workload.parameters) {
+            CatalogueEntry entry = field_entry("params", fmt::format("workload.{}", field.path), field);
+            entry.summary = fmt::format("{}: {}", workload.id, entry.summary);
+            const auto known = std::find_if(entries.begin(), entries.end(),
+                                            [&entry](const CatalogueEntry& other) { return other.name == entry.name; });
+            if (known == entries.end())
+                entries.push_back(std::move(entry));
+            else
+                known->summary += " | " + entry.summary;
+        }
+    return entries;
+}
+
 std::vector<CatalogueEntry> parameters() {
     std::vector<CatalogueEntry> entries;
     for (const sim::FieldInfo& field : sim::describe<pipeline::GpuParams>())
@@ -96,9 +114,7 @@ std::vector<CatalogueEntry> parameters() {
     for (const models::DesignInfo& design : models::designs())
         for (const sim::FieldInfo& field : design.parameters())
             entries.push_back(field_entry("params", field.path, field));
-    for (const traces::Workload& workload : traces::workloads())
-        for (const sim::FieldInfo& field : workload.parameters)
-            entries.push_back(field_entry("params", fmt::format("workload.{}", field.path), field));
+    for (CatalogueEntry& entry : workload_parameters()) entries.push_back(std::move(entry));
     return entries;
 }
 

@@ -1,0 +1,43 @@
+// Numbers of small comparisons, kept in the tree: whoever changes the model sees here what that changes.
+//
+// When the change is meant: ROPSIM_UPDATE_GOLDEN=1 build/release/bin/golden_tests, then look at the difference.
+#include "models/kbuffers/library.hpp"
+#include "reports/comparison.hpp"
+#include "sim/described.hpp"
+#include "tests/support/paths.hpp"
+#include "tests/support/program_run.hpp"
+
+#include <cstdlib>
+#include <gtest/gtest.h>
+
+namespace {
+
+std::vector<std::string> row_of(const std::string& scene, const pipeline::RunResult& run) {
+    std::vector<std::string> cells{scene, run.design};
+    for (const std::uint64_t number : {run.cycles, run.fragments, run.hazards.h1, run.hazards.h2, run.hazards.h3,
+                                       run.hazards.h4, run.wrong_pixels, run.lost_fragments})
+        cells.push_back(std::to_string(number));
+    return cells;
+}
+
+std::string numbers_of(const std::string& scene) {
+    reports::ComparisonRequest request;
+    request.scene = scene;
+    request.width = request.height = 64;
+    for (const models::DesignInfo& design : models::designs()) request.designs.emplace_back(design.id);
+    std::string text;
+    for (const pipeline::RunResult& run : reports::compare(reports::prepare(request)).runs)
+        text += sim::csv_line(row_of(scene, run));
+    return text;
+}
+
+TEST(DesignsGolden, NumbersAreThoseKeptInTheTree) {
+    std::string now = sim::csv_line(
+        {"scene", "design", "cycles", "fragments", "h1", "h2", "h3", "h4", "wrong_pixels", "lost_fragments"});
+    for (const char* scene : {"gen:stack?n=64", "gen:discs?n=200", "gen:random-quads?n=2000"}) now += numbers_of(scene);
+    const auto file = ropsim_test::source_dir() / "tests/golden/designs.csv";
+    if (std::getenv("ROPSIM_UPDATE_GOLDEN") != nullptr) ropsim_test::write_text(file, now);
+    EXPECT_EQ(now, ropsim_test::file_text(file));
+}
+
+} // namespace

@@ -23,20 +23,20 @@ enum class Semantic : std::uint8_t { position, normal, colour, texcoord0, texcoo
 
 /// Bytes in GPU memory. `address` is where they lie; assigned by Resources::place().
 struct Buffer {
-    std::string            name;
+    std::string name;
     std::vector<std::byte> bytes;
-    std::uint64_t          address = 0;
+    std::uint64_t address = 0;
 };
 
 /// Where one vertex attribute lies: element i starts at offset + i * stride of `buffer`.
 struct VertexAttribute {
-    Semantic      semantic   = Semantic::position;
-    ComponentType type       = ComponentType::f32;
-    std::uint8_t  components = 3; ///< 1 to 4
-    bool          normalized = false;
-    std::uint32_t buffer     = 0;
-    std::uint64_t offset     = 0;
-    std::uint32_t stride     = 12; ///< bytes; tightly packed data states its real element size here
+    Semantic semantic = Semantic::position;
+    ComponentType type = ComponentType::f32;
+    std::uint8_t components = 3; ///< 1 to 4
+    bool normalized = false;
+    std::uint32_t buffer = 0;
+    std::uint64_t offset = 0;
+    std::uint32_t stride = 12; ///< bytes; tightly packed data states its real element size here
 };
 
 enum class Topology : std::uint8_t { triangles, triangle_strip, triangle_fan };
@@ -48,14 +48,14 @@ constexpr std::uint32_t bytes_of(IndexType type) {
 
 /// The vertex input of a draw.
 struct Geometry {
-    std::string                  name;
-    Topology                     topology = Topology::triangles;
+    std::string name;
+    Topology topology = Topology::triangles;
     std::vector<VertexAttribute> attributes;
-    std::uint32_t                vertex_count = 0;
-    IndexType                    index_type   = IndexType::none;
-    std::uint32_t                index_buffer = 0;
-    std::uint64_t                index_offset = 0;
-    std::uint32_t                index_count  = 0; ///< number of indices, or of vertices when not indexed
+    std::uint32_t vertex_count = 0;
+    IndexType index_type = IndexType::none;
+    std::uint32_t index_buffer = 0;
+    std::uint64_t index_offset = 0;
+    std::uint32_t index_count = 0; ///< number of indices, or of vertices when not indexed
 
     const VertexAttribute* find(Semantic semantic) const;
     /// Triangles the topology makes of index_count indices, degenerate ones included.
@@ -63,20 +63,27 @@ struct Geometry {
 };
 
 enum class Wrap : std::uint8_t { repeat, clamp, mirror };
-enum class Filter : std::uint8_t { nearest, linear, nearest_mip_nearest, linear_mip_nearest, nearest_mip_linear, linear_mip_linear };
+enum class Filter : std::uint8_t {
+    nearest,
+    linear,
+    nearest_mip_nearest,
+    linear_mip_nearest,
+    nearest_mip_linear,
+    linear_mip_linear
+};
 
 /// An RGBA8 image with its mip levels (level 0 first, each half the size of the one before, down to 1x1).
 struct Texture {
     struct Level {
-        std::uint32_t                  width = 0, height = 0;
-        std::vector<std::uint8_t>      rgba; ///< width * height * 4, row 0 is the top row
-        std::uint64_t                  address = 0; ///< in GPU memory, 4x4-texel tiles of 64 bytes in row order
+        std::uint32_t width = 0, height = 0;
+        std::vector<std::uint8_t> rgba; ///< width * height * 4, row 0 is the top row
+        std::uint64_t address = 0;      ///< in GPU memory, 4x4-texel tiles of 64 bytes in row order
     };
-    std::string        name;
+    std::string name;
     std::vector<Level> levels;
-    Wrap               wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
-    Filter             min_filter = Filter::linear_mip_nearest, mag_filter = Filter::linear;
-    bool               srgb       = true; ///< texels are sRGB-encoded and decoded to linear on read
+    Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
+    Filter min_filter = Filter::linear_mip_nearest, mag_filter = Filter::linear;
+    bool srgb = true; ///< texels are sRGB-encoded and decoded to linear on read
 
     /// Builds levels 1.. from level 0 by a 2x2 box filter (in linear light when srgb).
     void make_mips();
@@ -86,31 +93,31 @@ enum class AlphaMode : std::uint8_t { opaque, mask, blend };
 
 struct Material {
     std::string name;
-    glm::vec4   base_colour{1.0F}; ///< linear RGBA factor
+    glm::vec4 base_colour{1.0F};    ///< linear RGBA factor
     std::int32_t base_texture = -1; ///< index into Resources::textures, -1 = none
-    std::uint8_t texcoord     = 0;  ///< which texcoord attribute
-    glm::mat3   uv_transform{1.0F}; ///< KHR_texture_transform
-    AlphaMode   alpha_mode   = AlphaMode::opaque;
-    float       alpha_cutoff = 0.5F;
-    bool        double_sided = false;
-    float       transmission = 0.0F; ///< > 0: drawn as transparent
-    bool        unlit        = false;
+    std::uint8_t texcoord = 0;      ///< which texcoord attribute
+    glm::mat3 uv_transform{1.0F};   ///< KHR_texture_transform
+    AlphaMode alpha_mode = AlphaMode::opaque;
+    float alpha_cutoff = 0.5F;
+    bool double_sided = false;
+    float transmission = 0.0F; ///< > 0: drawn as transparent
+    bool unlit = false;
 
     bool transparent() const { return alpha_mode == AlphaMode::blend || transmission > 0.0F; }
 };
 
 /// One draw call: a geometry with a material, once per model matrix.
 struct Draw {
-    std::string            name;
-    std::uint32_t          geometry = 0;
-    std::uint32_t          material = 0;
+    std::string name;
+    std::uint32_t geometry = 0;
+    std::uint32_t material = 0;
     std::vector<glm::mat4> instances; ///< model-to-world matrices, at least one
 };
 
 struct Resources {
-    std::vector<Buffer>   buffers;
+    std::vector<Buffer> buffers;
     std::vector<Geometry> geometries;
-    std::vector<Texture>  textures;
+    std::vector<Texture> textures;
     std::vector<Material> materials;
 
     /// Gives every buffer and texture level an address in GPU memory, 256-byte aligned, in order.
@@ -122,8 +129,8 @@ struct Resources {
 
 /// From where, and onto how many pixels, the scene is drawn.
 struct View {
-    glm::mat4     view{1.0F};
-    glm::mat4     projection{1.0F}; ///< to clip space with -w <= z <= w mapped to window depth [0,1] by (z/w+1)/2
+    glm::mat4 view{1.0F};
+    glm::mat4 projection{1.0F}; ///< to clip space with -w <= z <= w mapped to window depth [0,1] by (z/w+1)/2
     std::uint32_t width = 512, height = 512; ///< pixels, 1 to 16384
 };
 

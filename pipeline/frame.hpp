@@ -19,7 +19,8 @@ enum class ColourFormat : std::uint8_t { rgba8, rgba16f, rgba32f };
 enum class PassKind : std::uint8_t {
     clear,   ///< sets `writes` to their initial values
     draw,    ///< rasterizes `draws`
-    resolve, ///< one full-screen pass that reads the k-buffer and writes the picture; not timed (specification W2, pass 2)
+    resolve, ///< one full-screen pass that reads the k-buffer and writes the picture; not timed (specification W2, pass
+             ///< 2)
 };
 
 /// `over`: rgb = source * a + target * (1 - a), alpha = a + target * (1 - a), with a = source alpha, colours not
@@ -27,37 +28,37 @@ enum class PassKind : std::uint8_t {
 enum class BlendMode : std::uint8_t { replace, over, add, least, greatest };
 
 struct DepthState {
-    bool test  = false; ///< LESS against the depth surface; a strict test keeps the first of equal depths
+    bool test = false; ///< LESS against the depth surface; a strict test keeps the first of equal depths
     bool write = false;
 };
 
 struct Pass {
-    std::string                name;
-    PassKind                   kind = PassKind::draw;
-    std::vector<std::string>   reads;  ///< surfaces
-    std::vector<std::string>   writes; ///< surfaces
-    std::vector<std::uint32_t> draws;  ///< indices into Frame::draws; draw passes only
-    DepthState                 depth;
-    bool                       colour  = false; ///< writes the shaded colour to the "colour" surface
-    BlendMode                  blend   = BlendMode::replace; ///< how; but for replace, Frame::opacity scales the alpha
-    bool                       both_faces = false; ///< draws triangles that face away, too
-    bool                       kbuffer = false; ///< fragments go through the frame's modify program
+    std::string name;
+    PassKind kind = PassKind::draw;
+    std::vector<std::string> reads;   ///< surfaces
+    std::vector<std::string> writes;  ///< surfaces
+    std::vector<std::uint32_t> draws; ///< indices into Frame::draws; draw passes only
+    DepthState depth;
+    bool colour = false;                  ///< writes the shaded colour to the "colour" surface
+    BlendMode blend = BlendMode::replace; ///< how; but for replace, Frame::opacity scales the alpha
+    bool both_faces = false;              ///< draws triangles that face away, too
+    bool kbuffer = false;                 ///< fragments go through the frame's modify program
 };
 
 /// What the passes of a frame use. Units, attributes and surfaces that nothing here asks for are not built, fetched or
 /// allocated; see machine.hpp.
 struct Needs {
-    bool index_buffer   = false;
-    bool normals        = false;
+    bool index_buffer = false;
+    bool normals = false;
     bool vertex_colours = false;
-    bool texcoords      = false;
-    bool textures       = false;
-    bool alpha_test     = false;
-    bool colours        = false; ///< fragments carry a colour
-    bool depth          = false; ///< depth surface and its tile cache
-    bool early_depth    = false;
+    bool texcoords = false;
+    bool textures = false;
+    bool alpha_test = false;
+    bool colours = false; ///< fragments carry a colour
+    bool depth = false;   ///< depth surface and its tile cache
+    bool early_depth = false;
     bool colour_surface = false;
-    bool kbuffer        = false;
+    bool kbuffer = false;
 };
 
 /// Something the frame, or this GPU, could have had and does not, and why.
@@ -67,24 +68,24 @@ struct LeftOut {
 };
 
 struct Frame {
-    std::string                          workload;
-    std::shared_ptr<const Resources>     resources;
-    std::vector<Draw>                    draws;
-    View                                 view;
-    std::vector<Pass>                    passes;
-    Needs                                needs;
-    std::vector<LeftOut>                 left_out; ///< by the pass graph: culled passes, unread attributes
-    std::shared_ptr<const ModifyProgram> program;  ///< null when no pass has a k-buffer
-    DepthFormat                          depth_format  = DepthFormat::d24;
-    ColourFormat                         colour_format = ColourFormat::rgba8;
-    glm::vec4                            background{1.0F};
-    float                                opacity = 0.5F; ///< uniform alpha of composited layers (A11)
+    std::string workload;
+    std::shared_ptr<const Resources> resources;
+    std::vector<Draw> draws;
+    View view;
+    std::vector<Pass> passes;
+    Needs needs;
+    std::vector<LeftOut> left_out;                ///< by the pass graph: culled passes, unread attributes
+    std::shared_ptr<const ModifyProgram> program; ///< null when no pass has a k-buffer
+    DepthFormat depth_format = DepthFormat::d24;
+    ColourFormat colour_format = ColourFormat::rgba8;
+    glm::vec4 background{1.0F};
+    float opacity = 0.5F; ///< uniform alpha of composited layers (A11)
 };
 
 /// Declared cost of a fragment shader for one quad.
 struct ShaderCost {
-    std::uint32_t alu       = 0; ///< instructions, each issued once per quad
-    std::uint32_t textures  = 0; ///< filtered texture reads
+    std::uint32_t alu = 0;       ///< instructions, each issued once per quad
+    std::uint32_t textures = 0;  ///< filtered texture reads
     std::uint32_t registers = 4; ///< 128-bit registers per fragment; they limit the quads in flight
 };
 

@@ -16,22 +16,24 @@ struct ClockParams {
     double core_mhz = 650;
 
     static constexpr auto fields() {
-        return std::tuple{sim::field<&ClockParams::core_mhz>("Clock of every unit but memory, when that has its own").unit("MHz").range(1, 100000)};
+        return std::tuple{sim::field<&ClockParams::core_mhz>("Clock of every unit but memory, when that has its own")
+                              .unit("MHz")
+                              .range(1, 100000)};
     }
 };
 static_assert(sim::fully_described<ClockParams>);
 
 struct GpuParams {
-    ClockParams         clock;
-    GeometryParams      geometry;
-    RasterizerParams    raster;
-    EarlyDepthParams    early_depth;
-    FragmentParams      fragment;
-    TextureParams       texture;
+    ClockParams clock;
+    GeometryParams geometry;
+    RasterizerParams raster;
+    EarlyDepthParams early_depth;
+    FragmentParams fragment;
+    TextureParams texture;
     ReorderBufferParams reorder_buffer;
-    CrossbarParams      crossbar;
-    RopParams           rop;
-    MemoryParams        memory;
+    CrossbarParams crossbar;
+    RopParams rop;
+    MemoryParams memory;
 
     static constexpr auto fields() {
         using P = GpuParams;

@@ -32,10 +32,12 @@ class PixelComparison {
 
   private:
     const float* at(const float* pixel, std::uint32_t layer) const { return pixel + std::size_t{layer} * entry_; }
-    float        depth(const float* entry) const { return entry[program_.depth_slot()]; }
-    bool         equal(const float* a, const float* b) const { return std::memcmp(a, b, entry_ * sizeof(float)) == 0; }
-    bool         filled(const float* entry) const { return depth(entry) != depth(empty_.data()); }
-    std::uint32_t count(const float* pixel, const float* entry) const { return count_before(pixel, entry, program_.k()); }
+    float depth(const float* entry) const { return entry[program_.depth_slot()]; }
+    bool equal(const float* a, const float* b) const { return std::memcmp(a, b, entry_ * sizeof(float)) == 0; }
+    bool filled(const float* entry) const { return depth(entry) != depth(empty_.data()); }
+    std::uint32_t count(const float* pixel, const float* entry) const {
+        return count_before(pixel, entry, program_.k());
+    }
     std::uint32_t count_before(const float* pixel, const float* entry, std::uint32_t end) const {
         std::uint32_t equals = 0;
         for (std::uint32_t layer = 0; layer < end; ++layer) equals += equal(at(pixel, layer), entry) ? 1U : 0U;
@@ -43,14 +45,15 @@ class PixelComparison {
     }
 
     const ModifyProgram& program_;
-    std::size_t          entry_;
-    std::vector<float>   empty_;
-    KBufferDifference&   result_;
+    std::size_t entry_;
+    std::vector<float> empty_;
+    KBufferDifference& result_;
 };
 
 } // namespace
 
-KBufferDifference compare_kbuffers(const ModifyProgram& program, std::span<const float> run, std::span<const float> reference) {
+KBufferDifference compare_kbuffers(const ModifyProgram& program, std::span<const float> run,
+                                   std::span<const float> reference) {
     CHECK(run.size() == reference.size());
     KBufferDifference result;
     const std::size_t floats = program.floats_per_pixel();

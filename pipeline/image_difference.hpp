@@ -11,12 +11,13 @@ namespace pipeline {
 
 struct KBufferDifference {
     std::vector<std::uint8_t> wrong; ///< per pixel: 1 where any bit differs
-    std::uint64_t             wrong_pixels   = 0;
-    std::uint64_t             lost_fragments = 0; ///< entries of the reference that no layer of the run holds
-    std::vector<LayerErrors>  layers;
+    std::uint64_t wrong_pixels = 0;
+    std::uint64_t lost_fragments = 0; ///< entries of the reference that no layer of the run holds
+    std::vector<LayerErrors> layers;
 };
 
 /// Both images hold floats_per_pixel() floats per pixel. Entries that equal the cleared entry are empty.
-KBufferDifference compare_kbuffers(const ModifyProgram& program, std::span<const float> run, std::span<const float> reference);
+KBufferDifference compare_kbuffers(const ModifyProgram& program, std::span<const float> run,
+                                   std::span<const float> reference);
 
 } // namespace pipeline

@@ -18,7 +18,8 @@ Machine::Machine(const GpuParams& gpu, const Frame& frame, std::span<const Fragm
     CHECK(static_cast<std::size_t>(draw_passes) == streams.size());
     if (frame.program != nullptr) {
         if (const std::string reason = design.refuses(*frame.program); !reason.empty())
-            throw sim::InputError(fmt::format("design {}: cannot run program {}: {}", design.id(), frame.program->id(), reason));
+            throw sim::InputError(
+                fmt::format("design {}: cannot run program {}: {}", design.id(), frame.program->id(), reason));
         plan_ = design.plan(*frame.program, frame.view);
     } else {
         plan_.site = UpdateSite::passes;
@@ -30,20 +31,21 @@ Machine::Machine(const GpuParams& gpu, const Frame& frame, std::span<const Fragm
 Machine::~Machine() = default;
 
 void Machine::build() {
-    units_            = std::make_unique<Units>(gpu_, *frame_, options_);
-    Units& units      = *units_;
+    units_ = std::make_unique<Units>(gpu_, *frame_, options_);
+    Units& units = *units_;
     units.simulation.set_observer(options_.observer);
     PassContext& pass = units.pass;
-    pass.frame        = frame_;
-    pass.program      = frame_->program.get();
-    pass.layout       = {frame_->view.width, frame_->view.height, gpu_.memory.partitions};
-    pass.peel         = plan_.passes;
-    pass.textures     = frame_->needs.textures;
+    pass.frame = frame_;
+    pass.program = frame_->program.get();
+    pass.layout = {frame_->view.width, frame_->view.height, gpu_.memory.partitions};
+    pass.peel = plan_.passes;
+    pass.textures = frame_->needs.textures;
     if (!streams_.empty()) pass.stream = &streams_[0];
 
     const bool shader_site = frame_->needs.kbuffer && plan_.site == UpdateSite::fragment_shader;
     if (frame_->needs.kbuffer && plan_.site != UpdateSite::passes)
-        units.kbuffer.emplace(pass.layout, *pass.program, shader_site && plan_.shader.visibility != Visibility::rop_cache);
+        units.kbuffer.emplace(pass.layout, *pass.program,
+                              shader_site && plan_.shader.visibility != Visibility::rop_cache);
     units.history.emplace(units.kbuffer ? pass.layout : SurfaceLayout{0, 0, 1});
     const auto partitions = gpu_.memory.partitions;
     // A quad keeps its slot from dispatch to commit: through the reorder buffer, the crossbar and the ROP's queue.
@@ -59,28 +61,32 @@ void Machine::build() {
     units.scheduler.emplace(context("fragment_scheduler"), gpu_.fragment.pipes, partitions, pass, plan_.scheduling,
                             plan_.shader.flush, payloads, options_.quads_done);
     for (std::uint32_t pipe = 0; pipe < gpu_.fragment.pipes; ++pipe)
-        units.pipes.emplace_back(context(fmt::format("fragment_pipe{}", pipe)), static_cast<std::uint16_t>(pipe), gpu_.fragment,
-                                 gpu_.texture, pass, partitions, shader_site ? &plan_.shader : nullptr, payloads);
-    units.reorder_buffer.emplace(context("reorder_buffer"), gpu_.reorder_buffer, gpu_.fragment.pipes, gpu_.reorder_quads());
+        units.pipes.emplace_back(context(fmt::format("fragment_pipe{}", pipe)), static_cast<std::uint16_t>(pipe),
+                                 gpu_.fragment, gpu_.texture, pass, partitions, shader_site ? &plan_.shader : nullptr,
+                                 payloads);
+    units.reorder_buffer.emplace(context("reorder_buffer"), gpu_.reorder_buffer, gpu_.fragment.pipes,
+                                 gpu_.reorder_quads());
     units.crossbar.emplace(context("crossbar"), gpu_.crossbar, pass, partitions);
     const RopSurfaces surfaces{&units.fixed, units.kbuffer ? &*units.kbuffer : nullptr, &*units.history, payloads};
     for (std::uint32_t rop = 0; rop < partitions; ++rop)
         units.rops.emplace_back(context(fmt::format("rop{}", rop)), gpu_.rop, pass, plan_, surfaces,
-                                RopShape{gpu_.fragment.pipes, frame_->draws.size(), uses_depth() || options_.build_everything,
+                                RopShape{gpu_.fragment.pipes, frame_->draws.size(),
+                                         uses_depth() || options_.build_everything,
                                          uses_colour() || options_.build_everything});
 }
 
 void Machine::link() {
-    Units&              units    = *units_;
-    const std::uint32_t width    = gpu_.raster.quads_per_clk;
-    const bool          guarded  = plan_.scheduling.guard != nullptr;
-    const sim::Cycle    lookup   = 1 + (guarded ? plan_.scheduling.lookup_latency : 0);
+    Units& units = *units_;
+    const std::uint32_t width = gpu_.raster.quads_per_clk;
+    const bool guarded = plan_.scheduling.guard != nullptr;
+    const sim::Cycle lookup = 1 + (guarded ? plan_.scheduling.lookup_latency : 0);
     const std::uint32_t accepted = guarded ? plan_.scheduling.lookups : gpu_.fragment.pipes;
     textures_linked_ = pass_reads_textures() || options_.build_everything;
     units.front.attach(units.memory);
     sim::connect(units.front.triangles_out(), units.rasterizer->triangles_in, {1, gpu_.raster.tiles_per_clk, 16});
     // Inputs are as wide as the wider side, so that the unit, not the wire, sets the rate.
-    const sim::ChannelConfig to_scheduler{lookup, std::max(width, accepted), static_cast<std::uint32_t>(8 * width * (lookup + 1))};
+    const sim::ChannelConfig to_scheduler{lookup, std::max(width, accepted),
+                                          static_cast<std::uint32_t>(8 * width * (lookup + 1))};
     if (units.early_depth) {
         sim::connect(units.rasterizer->quads_out, units.early_depth->quads_in, {1, width, 4 * width});
         sim::ChannelConfig delayed = to_scheduler;
@@ -98,11 +104,12 @@ void Machine::link() {
         FragmentPipeline& unit = units.pipes[pipe];
         sim::connect(units.scheduler->pipes_out[pipe], unit.quads_in, {1, 1, 4});
         sim::connect(unit.done_out, units.reorder_buffer->completions_in[pipe], {1, 1, 4});
-        if (textures_linked_)
-            units.memory.attach(unit.textures_out, unit.textures_in);
+        if (textures_linked_) units.memory.attach(unit.textures_out, unit.textures_in);
         for (std::size_t rop = 0; rop < unit.reads_out.size(); ++rop) {
-            sim::connect(unit.reads_out[rop], units.rops[rop].reads_in[pipe], {cross, 1, static_cast<std::uint32_t>(cross + 4)});
-            sim::connect(units.rops[rop].reads_out[pipe], unit.reads_in[rop], {cross, 4, static_cast<std::uint32_t>(4 * (cross + 2))});
+            sim::connect(unit.reads_out[rop], units.rops[rop].reads_in[pipe],
+                         {cross, 1, static_cast<std::uint32_t>(cross + 4)});
+            sim::connect(units.rops[rop].reads_out[pipe], unit.reads_in[rop],
+                         {cross, 4, static_cast<std::uint32_t>(4 * (cross + 2))});
             if (!unit.invalidations_in.empty())
                 sim::connect(units.rops[rop].invalidations_out[pipe], unit.invalidations_in[rop], {1, 16, 64});
         }
@@ -111,33 +118,29 @@ void Machine::link() {
     sim::connect(units.reorder_buffer->quads_out, units.crossbar->quads_in, {1, retire, 4 * retire});
     for (std::uint32_t rop = 0; rop < gpu_.memory.partitions; ++rop) {
         Rop& unit = units.rops[rop];
-        sim::connect(units.crossbar->partitions_out[rop], unit.quads_in, {cross, 1, gpu_.crossbar.queue + static_cast<std::uint32_t>(cross)});
+        sim::connect(units.crossbar->partitions_out[rop], unit.quads_in,
+                     {cross, 1, gpu_.crossbar.queue + static_cast<std::uint32_t>(cross)});
         units.memory.attach_rop(rop, unit.memory_out, unit.memory_in);
         if (!units.scheduler->commits_in.empty())
             sim::connect(unit.commits_out, units.scheduler->commits_in[rop], {1, 2, 16});
     }
 }
 
-bool Machine::pass_reads_textures() const {
-    return frame_->needs.textures || peels();
-}
+bool Machine::pass_reads_textures() const { return frame_->needs.textures || peels(); }
 
-bool Machine::peels() const {
-    return frame_->needs.kbuffer && plan_.site == UpdateSite::passes;
-}
+bool Machine::peels() const { return frame_->needs.kbuffer && plan_.site == UpdateSite::passes; }
 
-bool Machine::uses_depth() const {
-    return frame_->needs.depth || peels();
-}
+bool Machine::uses_depth() const { return frame_->needs.depth || peels(); }
 
 bool Machine::uses_colour() const {
     return frame_->needs.colour_surface || (peels() && frame_->program->needs_colour());
 }
 
-std::uint64_t Machine::total_quads(const Frame& frame, std::span<const FragmentStream> streams, const KBufferDesign& design) {
-    const bool    peels = frame.program != nullptr && design.plan(*frame.program, frame.view).site == UpdateSite::passes;
+std::uint64_t Machine::total_quads(const Frame& frame, std::span<const FragmentStream> streams,
+                                   const KBufferDesign& design) {
+    const bool peels = frame.program != nullptr && design.plan(*frame.program, frame.view).site == UpdateSite::passes;
     std::uint64_t quads = 0;
-    std::size_t   next  = 0;
+    std::size_t next = 0;
     for (const Pass& pass : frame.passes) {
         if (pass.kind != PassKind::draw) continue;
         quads += streams[next++].quads.size() * (pass.kbuffer && peels ? frame.program->k() : 1);
@@ -152,9 +155,9 @@ void Machine::set_costs() {
     std::uint32_t registers = 1;
     for (std::size_t draw = 0; draw < costs.size(); ++draw) {
         const Draw& call = frame_->draws[draw];
-        costs[draw]      = shader_cost(frame_->resources->materials[call.material], frame_->resources->geometries[call.geometry],
-                                  frame_->needs);
-        registers        = std::max(registers, costs[draw].registers);
+        costs[draw] = shader_cost(frame_->resources->materials[call.material],
+                                  frame_->resources->geometries[call.geometry], frame_->needs);
+        registers = std::max(registers, costs[draw].registers);
     }
     // A shader that reads and writes the k-buffer keeps all render targets in registers.
     if (units_->pass.end == FragmentEnd::kbuffer_store) registers += frame_->program->targets();
@@ -168,8 +171,8 @@ void Machine::begin(const std::string& name) {
 
 void Machine::end() {
     PassResult& pass = passes_.back();
-    pass.cycles      = units_->cycle() - pass.first_cycle;
-    pass.counters    = sim::to_json(sim::difference(units_->stats(), units_->stats_at_pass_start));
+    pass.cycles = units_->cycle() - pass.first_cycle;
+    pass.counters = sim::to_json(sim::difference(units_->stats(), units_->stats_at_pass_start));
 }
 
 void Machine::stream_surface(std::uint64_t read_bytes, std::uint64_t write_bytes) {
@@ -179,7 +182,7 @@ void Machine::stream_surface(std::uint64_t read_bytes, std::uint64_t write_bytes
 }
 
 void Machine::run_draw(const FragmentStream& stream) {
-    Units& units      = *units_;
+    Units& units = *units_;
     units.pass.stream = &stream;
     for (Rop& rop : units.rops) rop.begin_pass();
     units.scheduler->begin_pass();
@@ -193,7 +196,7 @@ void Machine::run_draw(const FragmentStream& stream) {
 void Machine::clear(const Pass& pass) {
     begin(pass.name);
     const std::size_t pixels = std::size_t{frame_->view.width} * frame_->view.height;
-    std::uint64_t     bytes  = 0;
+    std::uint64_t bytes = 0;
     for (const std::string& surface : pass.writes) {
         if (surface == "depth") {
             units_->fixed.depth.assign(pixels, farthest_depth(frame_->depth_format));
@@ -212,21 +215,21 @@ void Machine::clear(const Pass& pass) {
 
 void Machine::draw(const Pass& pass, const FragmentStream& stream) {
     PassContext& context = units_->pass;
-    FixedSurfaces&    fixed  = units_->fixed;
+    FixedSurfaces& fixed = units_->fixed;
     const std::size_t pixels = std::size_t{frame_->view.width} * frame_->view.height;
     fixed.winner.resize(pixels, ~QuadId{0});
     if (pass.depth.test || pass.depth.write) fixed.depth.resize(pixels, farthest_depth(frame_->depth_format));
     if (pass.colour) fixed.colour.resize(pixels, through_format(frame_->colour_format, frame_->background));
-    context.depth        = pass.depth;
-    context.blend        = pass.blend;
+    context.depth = pass.depth;
+    context.blend = pass.blend;
     context.colour_write = pass.colour;
     context.colour_bytes = colour_bytes(frame_->colour_format);
     context.depth_format = frame_->depth_format;
     context.read_only_format = frame_->depth_format;
-    context.depth_bytes  = depth_bytes(frame_->depth_format);
-    context.behind       = nullptr;
+    context.depth_bytes = depth_bytes(frame_->depth_format);
+    context.behind = nullptr;
     if (!pass.kbuffer) {
-        context.end             = FragmentEnd::depth_colour;
+        context.end = FragmentEnd::depth_colour;
         context.read_only_depth = nullptr;
         begin(pass.name);
         run_draw(stream);
@@ -247,19 +250,19 @@ void Machine::draw(const Pass& pass, const FragmentStream& stream) {
 
 // W3: per layer clear, draw with the peel test against the layer before, copy the depth for the next one.
 void Machine::draw_layers(const Pass& pass, const FragmentStream& stream) {
-    PassContext&         context = units_->pass;
+    PassContext& context = units_->pass;
     const ModifyProgram& program = *frame_->program;
-    const std::size_t    pixels  = std::size_t{frame_->view.width} * frame_->view.height;
-    const std::size_t    floats  = program.floats_per_pixel();
-    units_->drawn                = std::exchange(units_->fixed, {});
-    context.read_only_depth      = pass.depth.test ? &units_->drawn.depth : nullptr;
-    context.end                  = FragmentEnd::depth_colour;
-    context.depth                = {true, true};
-    context.blend                = BlendMode::replace;
-    context.depth_format         = plan_.passes.depth_format;
-    context.depth_bytes          = depth_bytes(context.depth_format);
-    context.colour_write         = program.needs_colour();
-    context.colour_bytes         = 16; // one RGBA32F target, as the k-buffer's entries
+    const std::size_t pixels = std::size_t{frame_->view.width} * frame_->view.height;
+    const std::size_t floats = program.floats_per_pixel();
+    units_->drawn = std::exchange(units_->fixed, {});
+    context.read_only_depth = pass.depth.test ? &units_->drawn.depth : nullptr;
+    context.end = FragmentEnd::depth_colour;
+    context.depth = {true, true};
+    context.blend = BlendMode::replace;
+    context.depth_format = plan_.passes.depth_format;
+    context.depth_bytes = depth_bytes(context.depth_format);
+    context.colour_write = program.needs_colour();
+    context.colour_bytes = 16; // one RGBA32F target, as the k-buffer's entries
     layers_.resize(pixels * floats);
     for (std::size_t pixel = 0; pixel < pixels; ++pixel) program.clear(layers_.data() + pixel * floats);
     PeeledLayer layer;
@@ -277,39 +280,45 @@ void Machine::draw_layers(const Pass& pass, const FragmentStream& stream) {
         end();
     }
     context.behind = nullptr;
-    units_->fixed  = std::move(units_->drawn);
+    units_->fixed = std::move(units_->drawn);
 }
 
 void Machine::keep_layer(std::uint32_t layer, std::size_t pixel, const FragmentStream& stream) {
     const QuadId winner = units_->fixed.winner[pixel];
     if (winner == ~QuadId{0}) return;
     const ModifyProgram& program = *frame_->program;
-    const Quad&          quad    = stream.quads[winner];
-    const std::size_t    x = pixel % frame_->view.width, y = pixel / frame_->view.width;
-    const std::size_t    corner = (y - quad.y) * 2 + (x - quad.x);
-    const float*         rgba   = stream.colours.empty() ? nullptr : &stream.colours[winner][corner].x;
+    const Quad& quad = stream.quads[winner];
+    const std::size_t x = pixel % frame_->view.width, y = pixel / frame_->view.width;
+    const std::size_t corner = (y - quad.y) * 2 + (x - quad.x);
+    const float* rgba = stream.colours.empty() ? nullptr : &stream.colours[winner][corner].x;
     program.make_entry(rgba, stream.depths[winner][corner],
-                       layers_.data() + pixel * program.floats_per_pixel() + std::size_t{layer} * program.floats_per_entry());
+                       layers_.data() + pixel * program.floats_per_pixel() +
+                           std::size_t{layer} * program.floats_per_entry());
 }
 
 RunResult Machine::run(const ReferenceImage& reference) {
-    RunResult   result;
+    RunResult result;
     std::size_t next = 0;
     for (const Pass& pass : frame_->passes) {
         switch (pass.kind) {
-        case PassKind::clear: clear(pass); break;
-        case PassKind::draw: draw(pass, streams_[next++]); break;
-        case PassKind::resolve: break; // not timed
+        case PassKind::clear:
+            clear(pass);
+            break;
+        case PassKind::draw:
+            draw(pass, streams_[next++]);
+            break;
+        case PassKind::resolve:
+            break; // not timed
         }
     }
-    result.design    = design_->id();
-    result.core_mhz  = gpu_.clock.core_mhz;
-    result.cycles    = units_->cycle();
+    result.design = design_->id();
+    result.core_mhz = gpu_.clock.core_mhz;
+    result.cycles = units_->cycle();
     list_units(result);
     collect_pixels(result, reference);
     collect_hazards(result);
     collect_counters(result);
-    result.passes     = std::move(passes_);
+    result.passes = std::move(passes_);
     result.host_ticks = units_->simulation.ticks();
     return result;
 }

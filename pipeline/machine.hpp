@@ -1,7 +1,7 @@
 // A GPU with one k-buffer design, running one frame.
 //
-// Builds only the units that the frame and the design need and links them; turns each pass of the frame into passes of the
-// hardware (one per layer for designs that peel); runs the event core once per pass; compares the surfaces with the
+// Builds only the units that the frame and the design need and links them; turns each pass of the frame into passes of
+// the hardware (one per layer for designs that peel); runs the event core once per pass; compares the surfaces with the
 // reference.
 #pragma once
 
@@ -20,12 +20,12 @@
 namespace pipeline {
 
 struct MachineOptions {
-    std::uint64_t               seed = 1;
-    sim::Mode                   mode = sim::Mode::normal;
-    const std::atomic<bool>*    stop = nullptr;        ///< becomes true to end the run (throws sim::Interrupted)
-    std::atomic<std::uint64_t>* quads_done = nullptr;  ///< progress
-    sim::Observer*              observer   = nullptr;
-    bool                        build_everything = false; ///< also units that nothing needs; results do not change
+    std::uint64_t seed = 1;
+    sim::Mode mode = sim::Mode::normal;
+    const std::atomic<bool>* stop = nullptr;          ///< becomes true to end the run (throws sim::Interrupted)
+    std::atomic<std::uint64_t>* quads_done = nullptr; ///< progress
+    sim::Observer* observer = nullptr;
+    bool build_everything = false; ///< also units that nothing needs; results do not change
 };
 
 class Machine {
@@ -40,7 +40,8 @@ class Machine {
     RunResult run(const ReferenceImage& reference);
 
     /// Quads that a run dispatches over all its passes, for progress.
-    static std::uint64_t total_quads(const Frame& frame, std::span<const FragmentStream> streams, const KBufferDesign& design);
+    static std::uint64_t total_quads(const Frame& frame, std::span<const FragmentStream> streams,
+                                     const KBufferDesign& design);
 
   private:
     struct Units;
@@ -68,16 +69,16 @@ class Machine {
     bool uses_depth() const;
     bool uses_colour() const;
 
-    GpuParams                       gpu_;
-    const Frame*                    frame_;
+    GpuParams gpu_;
+    const Frame* frame_;
     std::span<const FragmentStream> streams_;
-    const KBufferDesign*            design_;
-    MachineOptions                  options_;
-    KBufferPlan                     plan_;
-    std::unique_ptr<Units>          units_;
-    std::vector<PassResult>         passes_;
-    std::vector<float>              layers_; ///< k-buffer content put together from peeled layers
-    bool                            textures_linked_ = false;
+    const KBufferDesign* design_;
+    MachineOptions options_;
+    KBufferPlan plan_;
+    std::unique_ptr<Units> units_;
+    std::vector<PassResult> passes_;
+    std::vector<float> layers_; ///< k-buffer content put together from peeled layers
+    bool textures_linked_ = false;
 };
 
 } // namespace pipeline

@@ -16,7 +16,7 @@ using Json = nlohmann::ordered_json;
 template <class Units, class Stats>
 Json units_report(const Units& units, const Stats& sum) {
     Json report;
-    report["units"]    = units.size();
+    report["units"] = units.size();
     report["counters"] = sim::to_json(sum);
     for (const auto& unit : units) add_activity(report["activity"], unit);
     return report;
@@ -47,12 +47,12 @@ Json link_report(std::uint64_t bytes, std::uint64_t fragments) {
 MachineStats Machine::Units::stats() const {
     MachineStats sum;
     sum.geometry = front.stats();
-    sum.raster   = rasterizer->stats();
+    sum.raster = rasterizer->stats();
     if (early_depth) sum.early_depth = early_depth->stats();
     sum.scheduler = scheduler->stats();
     for (const FragmentPipeline& pipe : pipes) sim::add(sum.fragment, pipe.stats());
     sum.reorder_buffer = reorder_buffer->stats();
-    sum.crossbar       = crossbar->stats();
+    sum.crossbar = crossbar->stats();
     for (const Rop& rop : rops) sim::add(sum.rop, rop.stats());
     sum.memory = memory.controller_stats();
     return sum;
@@ -65,23 +65,27 @@ void Machine::list_units(RunResult& result) const {
         else
             result.left_out.emplace_back(unit, std::move(reason));
     };
-    const Units&      units  = *units_;
-    const bool        shader_site = units.payloads.has_value();
+    const Units& units = *units_;
+    const bool shader_site = units.payloads.has_value();
     for (const char* unit : {"command processor", "vertex reuse", "vertex fetch", "vertex shader", "primitive assembly",
-                             "clip and cull", "triangle setup", "rasterizer", "fragment scheduler", "fragment pipelines",
-                             "reorder buffer", "crossbar", "ROP partitions", "memory partitions"})
+                             "clip and cull", "triangle setup", "rasterizer", "fragment scheduler",
+                             "fragment pipelines", "reorder buffer", "crossbar", "ROP partitions", "memory partitions"})
         part(true, unit, {});
     part(units.front.has_index_fetch(), "index fetch", "no draw is indexed");
     part(units.early_depth.has_value(), "early depth test", "no pass tests a depth surface that it does not write");
     part(textures_linked_, "texture path to memory", "no texture and no peeled layer is read");
-    part(plan_.scheduling.guard != nullptr, "dispatch guard and side buffer", "the design lets every quad into the pipes");
+    part(plan_.scheduling.guard != nullptr, "dispatch guard and side buffer",
+         "the design lets every quad into the pipes");
     part(shader_site, "k-buffer read path of the shaders", "the design does not read the k-buffer in the shader");
-    part(plan_.site == UpdateSite::blender && units.kbuffer, "programmable blender", "the design does not modify pixels in the ROP");
-    part(units.kbuffer.has_value(), "k-buffer surface and its tile cache", "the design keeps its layers in depth and colour surfaces");
+    part(plan_.site == UpdateSite::blender && units.kbuffer, "programmable blender",
+         "the design does not modify pixels in the ROP");
+    part(units.kbuffer.has_value(), "k-buffer surface and its tile cache",
+         "the design keeps its layers in depth and colour surfaces");
     part(uses_depth(), "depth tile cache", "no pass tests or writes depth");
     part(uses_colour(), "colour tile cache", "no pass writes colour");
     for (const LeftOut& item : frame_->left_out)
-        if (std::none_of(result.left_out.begin(), result.left_out.end(), [&](const auto& listed) { return listed.first == item.unit; }))
+        if (std::none_of(result.left_out.begin(), result.left_out.end(),
+                         [&](const auto& listed) { return listed.first == item.unit; }))
             result.left_out.emplace_back(item.unit, item.reason);
 }
 
@@ -90,9 +94,9 @@ void Machine::collect_pixels(RunResult& result, const ReferenceImage& reference)
     if (frame_->needs.kbuffer) {
         result.kbuffer = units.kbuffer ? units.kbuffer->image() : layers_;
         KBufferDifference difference = compare_kbuffers(*frame_->program, result.kbuffer, reference.kbuffer);
-        result.wrong_mask     = std::move(difference.wrong);
+        result.wrong_mask = std::move(difference.wrong);
         result.lost_fragments = difference.lost_fragments;
-        result.layers         = std::move(difference.layers);
+        result.layers = std::move(difference.layers);
     }
     result.wrong_mask.resize(std::size_t{frame_->view.width} * frame_->view.height);
     if (frame_->needs.colour_surface) {
@@ -112,7 +116,8 @@ void Machine::collect_pixels(RunResult& result, const ReferenceImage& reference)
 std::vector<float> Machine::colour_surface() const {
     std::vector<float> image;
     image.reserve(units_->fixed.colour.size() * 4);
-    for (const glm::vec4& colour : units_->fixed.colour) image.insert(image.end(), {colour.r, colour.g, colour.b, colour.a});
+    for (const glm::vec4& colour : units_->fixed.colour)
+        image.insert(image.end(), {colour.r, colour.g, colour.b, colour.a});
     return image;
 }
 
@@ -137,13 +142,14 @@ void Machine::collect_hazards(RunResult& result) const {
     std::stable_sort(result.pairs.begin(), result.pairs.end(),
                      [](const HazardPair& a, const HazardPair& b) { return a.read < b.read; });
     const std::uint64_t total = result.hazards.total();
-    result.mean_staleness     = total == 0 ? 0.0 : static_cast<double>(staleness) / static_cast<double>(total);
-    result.lost_updates       = units.kbuffer ? units.kbuffer->lost_updates() : 0;
+    result.mean_staleness = total == 0 ? 0.0 : static_cast<double>(staleness) / static_cast<double>(total);
+    result.lost_updates = units.kbuffer ? units.kbuffer->lost_updates() : 0;
 
     const SurfaceLayout& layout = units.pass.layout;
     if (total != 0) result.hazard_mask.resize(std::size_t{layout.width} * layout.height);
     for (std::size_t pixel = 0; pixel < result.wrong_mask.size(); ++pixel) {
-        const auto x = static_cast<std::uint32_t>(pixel % layout.width), y = static_cast<std::uint32_t>(pixel / layout.width);
+        const auto x = static_cast<std::uint32_t>(pixel % layout.width),
+                   y = static_cast<std::uint32_t>(pixel / layout.width);
         const std::uint8_t classes =
             units.kbuffer ? units.history->classes(layout.block_of(x, y), y % 2 * 2 + x % 2) : std::uint8_t{0};
         if (total != 0) result.hazard_mask[pixel] = classes;
@@ -152,18 +158,18 @@ void Machine::collect_hazards(RunResult& result) const {
 }
 
 void Machine::collect_counters(RunResult& result) const {
-    const Units&       units = *units_;
+    const Units& units = *units_;
     const MachineStats stats = units.stats();
-    result.fragments         = stats.rop.fragments;
-    Json& stages             = result.stages;
-    stages                   = units.front.report();
-    stages["rasterizer"]     = one_unit_report(*units.rasterizer);
+    result.fragments = stats.rop.fragments;
+    Json& stages = result.stages;
+    stages = units.front.report();
+    stages["rasterizer"] = one_unit_report(*units.rasterizer);
     if (units.early_depth) stages["early_depth_test"] = one_unit_report(*units.early_depth);
     stages["fragment_scheduler"] = one_unit_report(*units.scheduler);
-    stages["fragment_pipeline"]  = units_report(units.pipes, stats.fragment);
-    stages["reorder_buffer"]     = one_unit_report(*units.reorder_buffer);
-    stages["crossbar"]           = one_unit_report(*units.crossbar);
-    stages["rop"]                = units_report(units.rops, stats.rop);
+    stages["fragment_pipeline"] = units_report(units.pipes, stats.fragment);
+    stages["reorder_buffer"] = one_unit_report(*units.reorder_buffer);
+    stages["crossbar"] = one_unit_report(*units.crossbar);
+    stages["rop"] = units_report(units.rops, stats.rop);
     const Json memory = units.memory.report();
     for (const auto& item : memory.items()) stages[item.key()] = item.value();
 
@@ -196,15 +202,14 @@ void Machine::collect_counters(RunResult& result) const {
                 link_report(stats.memory.bytes[client], result.fragments);
     result.bytes["crossbar"] = link_report(stats.crossbar.bytes, result.fragments);
 
-    if (frame_->program != nullptr)
-        result.area = design_->area(*frame_->program, frame_->view, gpu_.reorder_quads());
+    if (frame_->program != nullptr) result.area = design_->area(*frame_->program, frame_->view, gpu_.reorder_quads());
     for (std::uint32_t draw = 0; draw < frame_->draws.size(); ++draw) collect_draw(result, draw);
 }
 
 void Machine::collect_vertex_caches(RunResult& result) const {
     const GeometryStats geometry = units_->front.stats();
     result.caches["post_transform"] = cache_report(geometry.vertex_reuse.hits, geometry.vertex_reuse.misses);
-    result.caches["pre_transform"]  = cache_report(geometry.vertex_fetch.cache.hits, geometry.vertex_fetch.cache.misses);
+    result.caches["pre_transform"] = cache_report(geometry.vertex_fetch.cache.hits, geometry.vertex_fetch.cache.misses);
 }
 
 void Machine::collect_draw(RunResult& result, std::uint32_t draw) const {
@@ -215,15 +220,15 @@ void Machine::collect_draw(RunResult& result, std::uint32_t draw) const {
         output.fragments += part.fragments;
         output.hazards += part.hazards;
         output.first_cycle = std::min(output.first_cycle, part.first_cycle);
-        output.last_cycle  = std::max(output.last_cycle, part.last_cycle);
+        output.last_cycle = std::max(output.last_cycle, part.last_cycle);
     }
-    Json counters             = sim::to_json(units_->front.draw_stats(draw));
-    counters["quads"]         = output.quads;
-    counters["fragments"]     = output.fragments;
+    Json counters = sim::to_json(units_->front.draw_stats(draw));
+    counters["quads"] = output.quads;
+    counters["fragments"] = output.fragments;
     counters["hazardous_quads"] = output.hazards;
-    counters["first_cycle"]   = output.quads == 0 ? 0 : output.first_cycle;
-    counters["last_cycle"]    = output.last_cycle;
-    const MemoryBytes bytes   = units_->memory.draw_bytes(draw);
+    counters["first_cycle"] = output.quads == 0 ? 0 : output.first_cycle;
+    counters["last_cycle"] = output.last_cycle;
+    const MemoryBytes bytes = units_->memory.draw_bytes(draw);
     for (std::size_t client = 0; client < memory_client_count; ++client)
         counters[fmt::format("dram_{}_bytes", memory_client_names[client])] = bytes[client];
     result.draws.push_back({frame_->draws[draw].name, draw, std::move(counters)});

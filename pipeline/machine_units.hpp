@@ -12,15 +12,15 @@ namespace pipeline {
 
 /// All counters of a machine; two copies subtracted give those of a pass.
 struct MachineStats {
-    GeometryStats          geometry;
-    RasterizerStats        raster;
-    EarlyDepthStats        early_depth;
+    GeometryStats geometry;
+    RasterizerStats raster;
+    EarlyDepthStats early_depth;
     FragmentSchedulerStats scheduler;
-    FragmentPipelineStats  fragment;
-    ReorderBufferStats     reorder_buffer;
-    CrossbarStats          crossbar;
-    RopStats               rop;
-    MemoryControllerStats  memory;
+    FragmentPipelineStats fragment;
+    ReorderBufferStats reorder_buffer;
+    CrossbarStats crossbar;
+    RopStats rop;
+    MemoryControllerStats memory;
 
     static constexpr auto fields() {
         using S = MachineStats;
@@ -39,34 +39,36 @@ static_assert(sim::fully_described<MachineStats>);
 
 struct Machine::Units {
     Units(const GpuParams& gpu, const Frame& frame, const MachineOptions& options)
-        : simulation(options.seed, options.mode), core(simulation.add_clock("core", gpu.clock.core_mhz)),
-          memory(simulation, core, gpu.memory), front(simulation, core, gpu.geometry, frame, frame.needs) {}
+        : simulation(options.seed, options.mode),
+          core(simulation.add_clock("core", gpu.clock.core_mhz)),
+          memory(simulation, core, gpu.memory),
+          front(simulation, core, gpu.geometry, frame, frame.needs) {}
 
-    sim::Simulation  simulation;
+    sim::Simulation simulation;
     const sim::Clock& core;
-    PassContext      pass;
+    PassContext pass;
 
     std::optional<KBufferMemory> kbuffer;
-    std::optional<StoreHistory>  history;
-    std::optional<QuadPayloads>  payloads;
-    FixedSurfaces                fixed;
-    FixedSurfaces                drawn; ///< result of the earlier passes, while a k-buffer pass peels its layers
+    std::optional<StoreHistory> history;
+    std::optional<QuadPayloads> payloads;
+    FixedSurfaces fixed;
+    FixedSurfaces drawn; ///< result of the earlier passes, while a k-buffer pass peels its layers
 
-    MemorySystem                      memory;
-    GeometryFront                     front;
-    std::optional<Rasterizer>         rasterizer;
-    std::optional<EarlyDepthTest>     early_depth;
-    std::optional<FragmentScheduler>  scheduler;
-    std::deque<FragmentPipeline>      pipes;
-    std::optional<ReorderBuffer>      reorder_buffer;
-    std::optional<Crossbar>           crossbar;
-    std::deque<Rop>                   rops;
+    MemorySystem memory;
+    GeometryFront front;
+    std::optional<Rasterizer> rasterizer;
+    std::optional<EarlyDepthTest> early_depth;
+    std::optional<FragmentScheduler> scheduler;
+    std::deque<FragmentPipeline> pipes;
+    std::optional<ReorderBuffer> reorder_buffer;
+    std::optional<Crossbar> crossbar;
+    std::deque<Rop> rops;
 
     MachineStats stats_at_pass_start;
-    sim::Cycle   cycle_at_pass_start = 0;
+    sim::Cycle cycle_at_pass_start = 0;
 
     MachineStats stats() const;
-    sim::Cycle   cycle() const { return core.cycle_at(simulation.now()); }
+    sim::Cycle cycle() const { return core.cycle_at(simulation.now()); }
 };
 
 } // namespace pipeline

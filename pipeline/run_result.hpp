@@ -13,63 +13,63 @@ namespace pipeline {
 
 /// Difference of layer i to the reference, in pixels.
 struct LayerErrors {
-    std::uint64_t missing   = 0; ///< entry of the reference found in no layer of the run
+    std::uint64_t missing = 0;   ///< entry of the reference found in no layer of the run
     std::uint64_t duplicate = 0; ///< entry found more often than in the reference
-    std::uint64_t unsorted  = 0; ///< nearer than the layer before it
+    std::uint64_t unsorted = 0;  ///< nearer than the layer before it
 };
 
 /// Counters of one pass as the design executed it (one design may execute a frame's pass several times).
 struct PassResult {
-    std::string            name;
-    sim::Cycle             first_cycle = 0, cycles = 0;
+    std::string name;
+    sim::Cycle first_cycle = 0, cycles = 0;
     nlohmann::ordered_json counters; ///< stage name -> counters of this pass
 };
 
 /// Counters of one draw, over all passes.
 struct DrawResult {
-    std::string            name;
-    std::uint32_t          draw = 0;
+    std::string name;
+    std::uint32_t draw = 0;
     nlohmann::ordered_json counters;
 };
 
 struct RunResult {
     std::string design;
-    double      core_mhz = 0;
-    sim::Cycle  cycles   = 0; ///< core cycles from the first command to the last byte written
+    double core_mhz = 0;
+    sim::Cycle cycles = 0;       ///< core cycles from the first command to the last byte written
     std::uint64_t fragments = 0; ///< fragments that reached the k-buffer (or depth test), over all passes
 
-    HazardCounts               hazards;
-    std::vector<HazardPair>    pairs;           ///< the first `pairs_kept` in order of the victim's store
+    HazardCounts hazards;
+    std::vector<HazardPair> pairs;              ///< the first `pairs_kept` in order of the victim's store
     std::vector<std::uint64_t> hazard_distance; ///< bin b: hazards with distance in [2^b, 2^(b+1)) quads
-    std::uint64_t              max_staleness = 0;
-    double                     mean_staleness = 0;
-    std::uint64_t              lost_updates   = 0; ///< fragments whose store was overwritten by a stale value
-    std::uint64_t              wrong_pixels   = 0; ///< pixels that differ from the reference in any bit
-    std::uint64_t              unexplained_pixels = 0; ///< wrong pixels without a recorded hazard: 0 by law
-    std::uint64_t              lost_fragments = 0; ///< entries of the reference that no layer of the run holds
-    std::vector<LayerErrors>   layers;
+    std::uint64_t max_staleness = 0;
+    double mean_staleness = 0;
+    std::uint64_t lost_updates = 0;       ///< fragments whose store was overwritten by a stale value
+    std::uint64_t wrong_pixels = 0;       ///< pixels that differ from the reference in any bit
+    std::uint64_t unexplained_pixels = 0; ///< wrong pixels without a recorded hazard: 0 by law
+    std::uint64_t lost_fragments = 0;     ///< entries of the reference that no layer of the run holds
+    std::vector<LayerErrors> layers;
 
     // Per pixel, row 0 first, width * height entries.
-    std::vector<float>         kbuffer;       ///< floats_per_pixel floats each; empty when the frame has no k-buffer
-    std::vector<float>         colour;        ///< RGBA of the "colour" surface; empty when the frame has none
-    std::vector<std::uint8_t>  hazard_mask;   ///< bit i: hazard class i happened here; empty when there was none
-    std::vector<std::uint8_t>  wrong_mask;    ///< 1 where the pixel differs from the reference
+    std::vector<float> kbuffer;            ///< floats_per_pixel floats each; empty when the frame has no k-buffer
+    std::vector<float> colour;             ///< RGBA of the "colour" surface; empty when the frame has none
+    std::vector<std::uint8_t> hazard_mask; ///< bit i: hazard class i happened here; empty when there was none
+    std::vector<std::uint8_t> wrong_mask;  ///< 1 where the pixel differs from the reference
 
     // What was built and left out on this machine for this design.
-    std::vector<std::string>                          built;
+    std::vector<std::string> built;
     std::vector<std::pair<std::string, std::string>> left_out; ///< unit, reason
 
-    nlohmann::ordered_json  stages;  ///< stage -> { "params", "counters", "activity" (cycles by activity) }, units summed
-    nlohmann::ordered_json  stalls;  ///< stage -> activity -> fraction of elapsed time
-    nlohmann::ordered_json  caches;  ///< cache -> { accesses, hits, misses, hit_rate }
-    nlohmann::ordered_json  bytes;   ///< link -> bytes, and bytes per fragment
-    nlohmann::ordered_json  area;    ///< area proxies: bits of state, comparators, ALU lanes
+    nlohmann::ordered_json stages; ///< stage -> { "params", "counters", "activity" (cycles by activity) }, units summed
+    nlohmann::ordered_json stalls; ///< stage -> activity -> fraction of elapsed time
+    nlohmann::ordered_json caches; ///< cache -> { accesses, hits, misses, hit_rate }
+    nlohmann::ordered_json bytes;  ///< link -> bytes, and bytes per fragment
+    nlohmann::ordered_json area;   ///< area proxies: bits of state, comparators, ALU lanes
     std::vector<PassResult> passes;
     std::vector<DrawResult> draws;
 
     // Cost of the run itself; everything else above is the same on every machine and for any thread count.
-    double        host_seconds = 0;
-    std::uint64_t host_ticks   = 0;
+    double host_seconds = 0;
+    std::uint64_t host_ticks = 0;
 };
 
 } // namespace pipeline

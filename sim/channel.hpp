@@ -44,7 +44,8 @@ class ChannelBase {
     std::uint64_t received() const { return received_; }
     bool empty() const { return sent_ == received_; }
     bool full() const { return size() >= config_.capacity; }
-    /// Messages sent and not received before the present instant: what the sender can know, whatever the order of ticks.
+    /// Messages sent and not received before the present instant: what the sender can know, whatever the order of
+    /// ticks.
     std::uint64_t outstanding() const {
         return sent_ - (receive_time_ == simulation_->now() ? received_before_ : received_);
     }

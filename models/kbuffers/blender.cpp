@@ -12,17 +12,19 @@ namespace {
 using namespace pipeline;
 
 struct BlenderParams {
-    BlendInterlock interlock  = BlendInterlock::stall;
-    std::uint32_t  lanes      = 4;
-    std::uint32_t  port_bytes = 32;
-    std::uint32_t  latency    = 16;
+    BlendInterlock interlock = BlendInterlock::stall;
+    std::uint32_t lanes = 4;
+    std::uint32_t port_bytes = 32;
+    std::uint32_t latency = 16;
 
     static constexpr auto fields() {
         using P = BlenderParams;
         return std::tuple{
             sim::field<&P::interlock>("What happens to a quad whose pixel is inside the blender"),
             sim::field<&P::lanes>("Scalar operations per cycle of one ROP's blender").unit("operations").range(1, 1024),
-            sim::field<&P::port_bytes>("Bytes per cycle between one ROP's blender and the tile cache").unit("bytes").range(1, 4096),
+            sim::field<&P::port_bytes>("Bytes per cycle between one ROP's blender and the tile cache")
+                .unit("bytes")
+                .range(1, 4096),
             sim::field<&P::latency>("From read to write (L_b)").unit("cycles").range(1, 1000)};
     }
 };
@@ -31,18 +33,19 @@ static_assert(sim::fully_described<BlenderParams>);
 class Blender final : public KBufferDesign {
   public:
     static constexpr std::string_view name = "blender";
-    static constexpr std::string_view text = "D2: programmable blender in the ROP, behind the reorder buffer, with interlock";
+    static constexpr std::string_view text =
+        "D2: programmable blender in the ROP, behind the reorder buffer, with interlock";
 
     explicit Blender(const BlenderParams& params) : params_(params) {}
 
     std::string_view id() const override { return name; }
     std::string_view summary() const override { return text; }
-    std::string      refuses(const ModifyProgram& program) const override {
+    std::string refuses(const ModifyProgram& program) const override {
         return program.needs_texture() ? "it fetches a table, which a blender cannot" : "";
     }
     KBufferPlan plan(const ModifyProgram&, const View&) const override {
         KBufferPlan plan;
-        plan.site    = UpdateSite::blender;
+        plan.site = UpdateSite::blender;
         plan.blender = {params_.interlock, params_.lanes, params_.port_bytes, params_.latency};
         return plan;
     }

@@ -12,15 +12,15 @@ namespace {
 using namespace pipeline;
 
 struct ExistingParams {
-    Visibility       visibility      = Visibility::writeback;
-    TextureCoherence tex_coherence   = TextureCoherence::invalidate_on_draw;
-    bool             bypass_l1       = false;
-    bool             atomic_reads    = false;
-    std::uint32_t    flush_triangles = 0;
-    bool             flush_draws     = false;
-    bool             drain           = true;
-    bool             writeback       = true;
-    bool             invalidate      = true;
+    Visibility visibility = Visibility::writeback;
+    TextureCoherence tex_coherence = TextureCoherence::invalidate_on_draw;
+    bool bypass_l1 = false;
+    bool atomic_reads = false;
+    std::uint32_t flush_triangles = 0;
+    bool flush_draws = false;
+    bool drain = true;
+    bool writeback = true;
+    bool invalidate = true;
 
     static constexpr auto fields() {
         using P = ExistingParams;
@@ -28,7 +28,8 @@ struct ExistingParams {
             sim::field<&P::visibility>("When a store becomes visible to a texture read"),
             sim::field<&P::tex_coherence>("What drops stale k-buffer lines from the texture caches"),
             sim::field<&P::bypass_l1>("k-buffer reads do not look into the texture caches"),
-            sim::field<&P::atomic_reads>("One read returns all render targets of a pixel at one instant (no torn reads, H4)"),
+            sim::field<&P::atomic_reads>(
+                "One read returns all render targets of a pixel at one instant (no torn reads, H4)"),
             sim::field<&P::flush_triangles>("Flush after this many triangles; 0 = never").unit("triangles"),
             sim::field<&P::flush_draws>("Flush at every draw boundary"),
             sim::field<&P::drain>("A flush waits until all quads in flight have stored"),
@@ -47,17 +48,17 @@ class Existing final : public KBufferDesign {
 
     std::string_view id() const override { return name; }
     std::string_view summary() const override { return text; }
-    std::string      refuses(const ModifyProgram&) const override { return {}; }
+    std::string refuses(const ModifyProgram&) const override { return {}; }
 
     KBufferPlan plan(const ModifyProgram&, const View&) const override {
         KBufferPlan plan;
-        plan.site                = UpdateSite::fragment_shader;
-        plan.shader.visibility   = params_.visibility;
-        plan.shader.coherence    = params_.tex_coherence;
-        plan.shader.bypass_l1    = params_.bypass_l1;
+        plan.site = UpdateSite::fragment_shader;
+        plan.shader.visibility = params_.visibility;
+        plan.shader.coherence = params_.tex_coherence;
+        plan.shader.bypass_l1 = params_.bypass_l1;
         plan.shader.atomic_reads = params_.atomic_reads;
-        plan.shader.flush        = {params_.flush_triangles, params_.flush_draws, params_.drain, params_.writeback,
-                                    params_.invalidate};
+        plan.shader.flush = {params_.flush_triangles, params_.flush_draws, params_.drain, params_.writeback,
+                             params_.invalidate};
         return plan;
     }
     nlohmann::ordered_json parameters() const override { return sim::to_json(params_); }

@@ -1,9 +1,9 @@
-// D5: traditional depth peeling. One geometry pass per layer with a fixed-function depth test; the shader rejects what is
-// not behind the layer before, read from a depth texture that the pass does not write.
+// D5: traditional depth peeling. One geometry pass per layer with a fixed-function depth test; the shader rejects what
+// is not behind the layer before, read from a depth texture that the pass does not write.
 //
-// The exact rule tells equal depths apart by submission order, so the layers are those of the reference; the eps rule is
-// the one of 2006 hardware and loses surfaces closer than eps (specification 004, section 6.1 item 5).
-// Source: specification 004, sections 3.3 (A10) and 7.6.
+// The exact rule tells equal depths apart by submission order, so the layers are those of the reference; the eps rule
+// is the one of 2006 hardware and loses surfaces closer than eps (specification 004, section 6.1 item 5). Source:
+// specification 004, sections 3.3 (A10) and 7.6.
 #include "models/kbuffers/library.hpp"
 #include "sim/described_json.hpp"
 
@@ -14,8 +14,8 @@ namespace {
 using namespace pipeline;
 
 struct MultipassParams {
-    PeelRule    rule         = PeelRule::exact;
-    double      eps          = 1e-4;
+    PeelRule rule = PeelRule::exact;
+    double eps = 1e-4;
     DepthFormat depth_format = DepthFormat::d32f;
 
     static constexpr auto fields() {
@@ -36,12 +36,12 @@ class Multipass final : public KBufferDesign {
 
     std::string_view id() const override { return name; }
     std::string_view summary() const override { return text; }
-    std::string      refuses(const ModifyProgram& program) const override {
+    std::string refuses(const ModifyProgram& program) const override {
         return program.id() == "nearest-k" ? "" : "peeling gives the nearest layers and nothing else";
     }
     KBufferPlan plan(const ModifyProgram&, const View&) const override {
         KBufferPlan plan;
-        plan.site   = UpdateSite::passes;
+        plan.site = UpdateSite::passes;
         plan.passes = {params_.rule, params_.eps, params_.depth_format};
         return plan;
     }

@@ -33,31 +33,36 @@ namespace {
 using namespace pipeline;
 
 struct ScoreboardParams {
-    Granularity    granularity    = Granularity::quad;
-    std::uint32_t  entries        = 0;
-    std::uint32_t  side_buffer    = 32;
-    std::uint32_t  lookups        = 4;
-    std::uint32_t  wakes          = 1;
-    std::uint32_t  lookup_latency = 2;
-    ReleasePoint   release        = ReleasePoint::visible;
-    bool           order_rule     = true;
-    DispatchPolicy policy         = DispatchPolicy::any_pipe;
-    Visibility     visibility     = Visibility::rop_cache;
-    bool           bypass_l1      = true;
+    Granularity granularity = Granularity::quad;
+    std::uint32_t entries = 0;
+    std::uint32_t side_buffer = 32;
+    std::uint32_t lookups = 4;
+    std::uint32_t wakes = 1;
+    std::uint32_t lookup_latency = 2;
+    ReleasePoint release = ReleasePoint::visible;
+    bool order_rule = true;
+    DispatchPolicy policy = DispatchPolicy::any_pipe;
+    Visibility visibility = Visibility::rop_cache;
+    bool bypass_l1 = true;
 
     static constexpr auto fields() {
         using P = ScoreboardParams;
         return std::tuple{
-            sim::field<&P::granularity>("Area one entry stands for: a pixel of a quad, a quad, or a tile of 4, 8 or 16 pixels"),
-            sim::field<&P::entries>("Entries, by hash of the area; 0 = one for every area of the image").unit("entries").range(0, 1 << 26),
+            sim::field<&P::granularity>(
+                "Area one entry stands for: a pixel of a quad, a quad, or a tile of 4, 8 or 16 pixels"),
+            sim::field<&P::entries>("Entries, by hash of the area; 0 = one for every area of the image")
+                .unit("entries")
+                .range(0, 1 << 26),
             sim::field<&P::side_buffer>("Quads that can wait for their area (B)").unit("quads").range(0, 65536),
             sim::field<&P::lookups>("Quads tested per cycle").unit("quads").range(1, 64),
             sim::field<&P::wakes>("Waiting quads dispatched per cycle").unit("quads").range(1, 64),
             sim::field<&P::lookup_latency>("Cycles of a lookup").unit("cycles").range(1, 100),
-            sim::field<&P::release>("When a quad frees its area: its store is in the ROP's tile cache, or readers see it"),
+            sim::field<&P::release>(
+                "When a quad frees its area: its store is in the ROP's tile cache, or readers see it"),
             sim::field<&P::order_rule>("A quad also waits behind older waiting quads of its area"),
             sim::field<&P::policy>("Pipe of a quad: the next free one, or the one of its tile"),
-            sim::field<&P::visibility>("When a store becomes visible to a k-buffer read; anything but rop_cache makes stores write through"),
+            sim::field<&P::visibility>(
+                "When a store becomes visible to a k-buffer read; anything but rop_cache makes stores write through"),
             sim::field<&P::bypass_l1>("k-buffer reads do not look into the texture caches")};
     }
 };
@@ -76,16 +81,21 @@ std::uint32_t areas(Granularity granularity, const View& view) {
 class ScoreboardTable final : public DispatchGuard {
   public:
     ScoreboardTable(const ScoreboardParams& params, const View& view)
-        : side_(side_of(params.granularity)), columns_((view.width + side_ - 1) / side_), width_(view.width),
-          per_pixel_(params.granularity == Granularity::pixel), hashed_(params.entries != 0),
-          entries_(hashed_ ? params.entries : areas(params.granularity, view)), in_flight_(std::size_t{4} * entries_),
+        : side_(side_of(params.granularity)),
+          columns_((view.width + side_ - 1) / side_),
+          width_(view.width),
+          per_pixel_(params.granularity == Granularity::pixel),
+          hashed_(params.entries != 0),
+          entries_(hashed_ ? params.entries : areas(params.granularity, view)),
+          in_flight_(std::size_t{4} * entries_),
           pixels_(std::size_t{view.width + 1} * (view.height + 1)) {}
 
     std::uint32_t keys() const override { return entries_; }
     std::uint32_t key(const Quad& quad) const override {
         const std::uint32_t area = quad.y / side_ * columns_ + quad.x / side_;
         // Fibonacci hashing: neighbouring areas spread over the table.
-        return hashed_ ? static_cast<std::uint32_t>((area * std::uint64_t{0x9E3779B97F4A7C15} >> 32U) % entries_) : area;
+        return hashed_ ? static_cast<std::uint32_t>((area * std::uint64_t{0x9E3779B97F4A7C15} >> 32U) % entries_)
+                       : area;
     }
 
     Conflict check(const Quad& quad, std::uint8_t mask) const override {
@@ -120,9 +130,9 @@ class ScoreboardTable final : public DispatchGuard {
         }
     }
 
-    std::uint32_t             side_, columns_, width_;
-    bool                      per_pixel_, hashed_;
-    std::uint32_t             entries_;
+    std::uint32_t side_, columns_, width_;
+    bool per_pixel_, hashed_;
+    std::uint32_t entries_;
     std::vector<std::int32_t> in_flight_;
     std::vector<std::int32_t> pixels_; ///< quads in flight per pixel, to tell true conflicts from false ones
 };
@@ -130,29 +140,31 @@ class ScoreboardTable final : public DispatchGuard {
 class Scoreboard final : public KBufferDesign {
   public:
     static constexpr std::string_view name = "scoreboard";
-    static constexpr std::string_view text = "D1: scoreboard in the fragment scheduler, side buffer for conflicting quads";
+    static constexpr std::string_view text =
+        "D1: scoreboard in the fragment scheduler, side buffer for conflicting quads";
 
     explicit Scoreboard(const ScoreboardParams& params) : params_(params) {}
 
     std::string_view id() const override { return name; }
     std::string_view summary() const override { return text; }
-    std::string      refuses(const ModifyProgram&) const override { return {}; }
+    std::string refuses(const ModifyProgram&) const override { return {}; }
 
     KBufferPlan plan(const ModifyProgram&, const View& view) const override {
         KBufferPlan plan;
-        plan.site              = UpdateSite::fragment_shader;
+        plan.site = UpdateSite::fragment_shader;
         plan.shader.visibility = params_.visibility;
-        plan.shader.coherence  = TextureCoherence::none;
-        plan.shader.bypass_l1  = params_.bypass_l1;
+        plan.shader.coherence = TextureCoherence::none;
+        plan.shader.bypass_l1 = params_.bypass_l1;
         // Released at visibility, a store must become visible without waiting for an eviction that may never come.
-        plan.shader.write_through = params_.visibility != Visibility::rop_cache && params_.release == ReleasePoint::visible;
-        plan.scheduling.guard          = std::make_unique<ScoreboardTable>(params_, view);
-        plan.scheduling.side_buffer    = params_.side_buffer;
-        plan.scheduling.lookups        = params_.lookups;
-        plan.scheduling.wakes          = params_.wakes;
+        plan.shader.write_through =
+            params_.visibility != Visibility::rop_cache && params_.release == ReleasePoint::visible;
+        plan.scheduling.guard = std::make_unique<ScoreboardTable>(params_, view);
+        plan.scheduling.side_buffer = params_.side_buffer;
+        plan.scheduling.lookups = params_.lookups;
+        plan.scheduling.wakes = params_.wakes;
         plan.scheduling.lookup_latency = params_.lookup_latency;
-        plan.scheduling.policy         = params_.policy;
-        plan.scheduling.order_rule     = params_.order_rule;
+        plan.scheduling.policy = params_.policy;
+        plan.scheduling.order_rule = params_.order_rule;
         return plan;
     }
     nlohmann::ordered_json parameters() const override { return sim::to_json(params_); }
@@ -162,7 +174,7 @@ class Scoreboard final : public KBufferDesign {
     nlohmann::ordered_json area(const ModifyProgram&, const View& view, std::uint32_t quads_in_flight) const override {
         const std::uint64_t entries = params_.entries != 0 ? params_.entries : areas(params_.granularity, view);
         const std::uint64_t counter = params_.granularity == Granularity::pixel ? 4 : std::bit_width(quads_in_flight);
-        const std::uint64_t packet  = 2 * std::bit_width(std::max(view.width, view.height)) + 4 + 32;
+        const std::uint64_t packet = 2 * std::bit_width(std::max(view.width, view.height)) + 4 + 32;
         return {{"added_state_bits", entries * counter + params_.side_buffer * packet},
                 {"scoreboard_bits", entries * counter},
                 {"side_buffer_bits", params_.side_buffer * packet},

@@ -21,7 +21,7 @@ class DispatchGuard {
     virtual Conflict check(const Quad& quad, std::uint8_t mask) const = 0;
     /// Quads with one key are dispatched in raster order, even when only one of them conflicts. In [0, keys()).
     virtual std::uint32_t key(const Quad& quad) const = 0;
-    virtual std::uint32_t keys() const                = 0;
+    virtual std::uint32_t keys() const = 0;
     /// The quad enters the pipes / its stores can be seen by the next reader.
     virtual void acquire(const Quad& quad, std::uint8_t mask) = 0;
     virtual void release(const Quad& quad, std::uint8_t mask) = 0;

@@ -7,12 +7,10 @@ namespace pipeline {
 
 namespace {
 
-constexpr std::uint32_t ceil_div(std::uint32_t value, std::uint32_t by) {
-    return (value + by - 1) / by;
-}
+constexpr std::uint32_t ceil_div(std::uint32_t value, std::uint32_t by) { return (value + by - 1) / by; }
 
-// Peeled layers lie in an address range of their own, in 64-byte lines of 4x4 depths. Each pass reads another layer, whose
-// lines must not be taken for those of the layer before: 2^24 lines are those of the largest surface.
+// Peeled layers lie in an address range of their own, in 64-byte lines of 4x4 depths. Each pass reads another layer,
+// whose lines must not be taken for those of the layer before: 2^24 lines are those of the largest surface.
 constexpr std::uint64_t layer_lines = std::uint64_t{1} << 40U;
 constexpr std::uint64_t lines_of_layer = std::uint64_t{1} << 24U;
 
@@ -21,13 +19,25 @@ constexpr std::uint64_t lines_of_layer = std::uint64_t{1} << 24U;
 FragmentPipeline::FragmentPipeline(sim::Context context, std::uint16_t pipe, const FragmentParams& params,
                                    const TextureParams& texture, const PassContext& pass, std::uint32_t partitions,
                                    const ShaderSite* site, QuadPayloads* payloads)
-    : Component(std::move(context)), pipe_(pipe), params_(params), texture_(texture), pass_(&pass), site_(site),
-      payloads_(payloads), program_targets_(site != nullptr ? pass.program->targets() : 0),
-      line_targets_(site == nullptr ? 0 : site->atomic_reads ? program_targets_ : 1),
-      l1_(texture, site != nullptr && !site->bypass_l1 ? line_targets_ : 0), threads_(params.quads_in_flight),
+    : Component(std::move(context)),
+      pipe_(pipe),
+      params_(params),
+      texture_(texture),
+      pass_(&pass),
+      site_(site),
+      payloads_(payloads),
+      program_targets_(site != nullptr ? pass.program->targets() : 0),
+      line_targets_(site == nullptr      ? 0
+                    : site->atomic_reads ? program_targets_
+                                         : 1),
+      l1_(texture, site != nullptr && !site->bypass_l1 ? line_targets_ : 0),
+      threads_(params.quads_in_flight),
       block_chain_(site != nullptr ? pass.layout.blocks() : 0),
-      line_chain_(texture.l1_bytes / TextureParams::line_bytes + 1), shading_(params.quads_in_flight),
-      hits_(params.quads_in_flight), finished_(params.quads_in_flight), unsent_(params.quads_in_flight) {
+      line_chain_(texture.l1_bytes / TextureParams::line_bytes + 1),
+      shading_(params.quads_in_flight),
+      hits_(params.quads_in_flight),
+      finished_(params.quads_in_flight),
+      unsent_(params.quads_in_flight) {
     for (std::uint32_t thread = params.quads_in_flight; thread > 0; --thread)
         free_threads_.push_back(static_cast<std::uint16_t>(thread - 1));
     thread_limit_ = params.quads_in_flight;
@@ -36,7 +46,8 @@ FragmentPipeline::FragmentPipeline(sim::Context context, std::uint16_t pipe, con
         reads_out.emplace_back(*this, port_names_.emplace_back("reads" + std::to_string(rop) + "_out"));
         reads_in.emplace_back(*this, port_names_.emplace_back("reads" + std::to_string(rop) + "_in"));
         if (site->coherence == TextureCoherence::invalidate_on_write)
-            invalidations_in.emplace_back(*this, port_names_.emplace_back("invalidations" + std::to_string(rop) + "_in"));
+            invalidations_in.emplace_back(*this,
+                                          port_names_.emplace_back("invalidations" + std::to_string(rop) + "_in"));
     }
 }
 
@@ -51,19 +62,19 @@ void FragmentPipeline::begin_pass(std::uint32_t registers_per_fragment) {
 bool FragmentPipeline::is_behind(float depth, QuadId quad, std::size_t pixel) const {
     const DepthCode captured = pass_->behind->depth[pixel];
     if (pass_->peel.rule == PeelRule::eps)
-        return static_cast<double>(depth) >= static_cast<double>(depth_value(pass_->depth_format, captured)) + pass_->peel.eps;
+        return static_cast<double>(depth) >=
+               static_cast<double>(depth_value(pass_->depth_format, captured)) + pass_->peel.eps;
     const DepthCode code = depth_code(pass_->depth_format, depth);
     return code > captured || (code == captured && quad > pass_->behind->order[pixel]);
 }
 
 std::uint8_t FragmentPipeline::behind_layer(const QuadTask& task) const {
     if (pass_->behind == nullptr) return task.mask;
-    const Quad&  quad = pass_->stream->quads[task.quad];
+    const Quad& quad = pass_->stream->quads[task.quad];
     std::uint8_t mask = 0;
     for (std::uint32_t pixel = 0; pixel < 4; ++pixel) {
         if ((task.mask >> pixel & 1) == 0) continue;
-        const std::size_t at =
-            static_cast<std::size_t>(quad.y + pixel / 2) * pass_->layout.width + quad.x + pixel % 2;
+        const std::size_t at = static_cast<std::size_t>(quad.y + pixel / 2) * pass_->layout.width + quad.x + pixel % 2;
         if (is_behind(pass_->stream->depths[task.quad][pixel], task.quad, at))
             mask = static_cast<std::uint8_t>(mask | 1U << pixel);
     }
@@ -74,22 +85,22 @@ void FragmentPipeline::start(const QuadTask& task) {
     const std::uint16_t index = free_threads_.back();
     free_threads_.pop_back();
     Thread& thread = threads_[index];
-    thread         = {};
-    thread.task    = task;
+    thread = {};
+    thread.task = task;
     const std::uint32_t draw = pass_->draw_of(task.quad);
     if (site_ != nullptr && site_->coherence == TextureCoherence::invalidate_on_draw && draw != draw_ && draw_ != ~0U) {
         l1_.drop_kbuffer_lines();
         ++stats_.l1.invalidations;
     }
-    draw_                          = draw;
-    const std::uint8_t before      = task.mask;
-    thread.task.mask               = behind_layer(task);
+    draw_ = draw;
+    const std::uint8_t before = task.mask;
+    thread.task.mask = behind_layer(task);
     stats_.peel_rejects += static_cast<std::uint64_t>(std::popcount(before) - std::popcount(thread.task.mask));
     std::uint32_t alu = ceil_div(std::max(pass_->shader_costs[draw].alu, 1U), params_.alu_per_clk);
     // The program's scalar operations run four wide, for the four fragments of the quad side by side.
     if (task.slot != no_slot) alu += ceil_div(pass_->program->cost().operations, 4 * params_.alu_per_clk);
     issue_free_ = cycle() + alu;
-    thread.alu  = alu;
+    thread.alu = alu;
     stats_.issue_cycles += alu;
     ++stats_.quads;
     stats_.fragments += static_cast<std::uint64_t>(std::popcount(task.mask));
@@ -97,7 +108,8 @@ void FragmentPipeline::start(const QuadTask& task) {
     fetch_textures(index);
 }
 
-// The 64-byte line of the quad's next read-only fetch: first the material's texture, then the peeled layer; ~0 = no more.
+// The 64-byte line of the quad's next read-only fetch: first the material's texture, then the peeled layer; ~0 = no
+// more.
 std::uint64_t FragmentPipeline::fetch_line(const Thread& thread) const {
     const bool textured = pass_->textures && !pass_->stream->texture_lines.empty() &&
                           pass_->stream->texture_lines[thread.task.quad] != ~std::uint32_t{0};
@@ -139,12 +151,12 @@ void FragmentPipeline::fetch_textures(std::uint16_t index) {
 
 void FragmentPipeline::append(Chain& chain, std::uint16_t thread) {
     (chain.first == nobody ? chain.first : threads_[chain.last].next) = thread;
-    chain.last            = thread;
+    chain.last = thread;
     threads_[thread].next = nobody;
 }
 
 void FragmentPipeline::texture_arrived(std::uint16_t index) {
-    Chain               waiting;
+    Chain waiting;
     const std::uint32_t line = std::exchange(threads_[index].line, TextureCache::none);
     if (line != TextureCache::none) {
         l1_.filled(line);
@@ -166,8 +178,8 @@ void FragmentPipeline::fetched(std::uint16_t index) {
 // All read-only fetches are there: the ALU part follows, in order of arrival.
 void FragmentPipeline::shaded(std::uint16_t index) {
     const Thread& thread = threads_[index];
-    const bool    filtered = thread.fetch > 0;
-    sim::Cycle    ready    = filtered ? std::max(cycle(), texture_free_) + texture_.hit_latency : cycle();
+    const bool filtered = thread.fetch > 0;
+    sim::Cycle ready = filtered ? std::max(cycle(), texture_free_) + texture_.hit_latency : cycle();
     ready += params_.latency + thread.alu - 1;
     if (!shading_.empty()) ready = std::max(ready, shading_.back().ready);
     shading_.push({index, ready});
@@ -175,7 +187,7 @@ void FragmentPipeline::shaded(std::uint16_t index) {
 
 void FragmentPipeline::run_program(const QuadTask& task) {
     const FragmentStream& stream = *pass_->stream;
-    float                 entry[4];
+    float entry[4];
     for (std::uint32_t pixel = 0; pixel < 4; ++pixel) {
         if ((task.mask >> pixel & 1) == 0) continue;
         const float* rgba = stream.colours.empty() ? nullptr : &stream.colours[task.quad][pixel].x;
@@ -210,14 +222,14 @@ bool FragmentPipeline::finish_one() {
 
 // L1 lookup of every render target of the quad's block: hits are sampled now, pending lines joined, the rest asked for.
 void FragmentPipeline::lookup_targets(std::uint16_t index) {
-    Thread&             thread = threads_[index];
-    const QuadTask&     task   = thread.task;
-    const Quad&         quad   = pass_->stream->quads[task.quad];
-    const std::uint32_t parts  = program_targets_ / line_targets_;
+    Thread& thread = threads_[index];
+    const QuadTask& task = thread.task;
+    const Quad& quad = pass_->stream->quads[task.quad];
+    const std::uint32_t parts = program_targets_ / line_targets_;
     const std::uint64_t part_mask = line_targets_ == program_targets_ ? all_targets() : 1;
-    thread.block                  = pass_->layout.block_of(quad.x, quad.y);
-    thread.generation             = l1_.generation();
-    thread.own                    = all_targets();
+    thread.block = pass_->layout.block_of(quad.x, quad.y);
+    thread.generation = l1_.generation();
+    thread.own = all_targets();
     texture_free_ = std::max(texture_free_, cycle()) + texture_.cycles_per_rgba32f * program_targets_;
     stats_.texture_cycles += texture_.cycles_per_rgba32f * program_targets_;
     ++stats_.kbuffer_reads;
@@ -230,7 +242,7 @@ void FragmentPipeline::lookup_targets(std::uint16_t index) {
         if (threads_[other].generation == thread.generation) pending |= threads_[other].own;
     for (std::uint32_t part = 0; part < parts; ++part) {
         const std::uint64_t targets = part_mask << part;
-        const std::uint32_t line    = l1_.find_kbuffer(thread.block, part);
+        const std::uint32_t line = l1_.find_kbuffer(thread.block, part);
         if (line == TextureCache::none) {
             const bool join = (pending & targets) != 0;
             if (join) thread.merged |= targets;
@@ -248,9 +260,9 @@ void FragmentPipeline::lookup_targets(std::uint16_t index) {
 }
 
 bool FragmentPipeline::send_read(std::uint16_t index) {
-    Thread&     thread = threads_[index];
-    const Quad& quad   = pass_->stream->quads[thread.task.quad];
-    auto&       port   = reads_out[pass_->layout.partition_of(quad.x, quad.y)];
+    Thread& thread = threads_[index];
+    const Quad& quad = pass_->stream->quads[thread.task.quad];
+    auto& port = reads_out[pass_->layout.partition_of(quad.x, quad.y)];
     if (!port.ready()) return false;
     port.send({thread.block, thread.task.slot, thread.own, pass_->draw_of(thread.task.quad), pipe_, index});
     return true;
@@ -260,7 +272,7 @@ bool FragmentPipeline::read_kbuffer_of_next() {
     bool progress = false;
     if (!read_in_hand_ && !shading_.empty() && shading_.front().ready <= cycle()) {
         const std::uint16_t index = shading_.front().thread;
-        const bool          reads = threads_[index].task.slot != no_slot;
+        const bool reads = threads_[index].task.slot != no_slot;
         if (reads && texture_free_ > cycle()) return false;
         shading_.pop();
         progress = true;
@@ -302,7 +314,7 @@ void FragmentPipeline::fill_l1(const Thread& thread, std::uint64_t targets) {
 void FragmentPipeline::give_to_waiting(const Thread& from, std::uint64_t targets) {
     const std::uint32_t slot = from.task.slot;
     for (std::uint16_t other = block_chain_[from.block].first; other != nobody; other = threads_[other].next) {
-        Thread&             thread = threads_[other];
+        Thread& thread = threads_[other];
         const std::uint64_t shared = thread.generation == from.generation ? thread.merged & targets : 0;
         for (std::uint64_t left = shared; left != 0; left &= left - 1) {
             const auto target = static_cast<std::uint32_t>(std::countr_zero(left));
@@ -328,7 +340,7 @@ void FragmentPipeline::finish_complete(std::uint32_t block) {
 }
 
 void FragmentPipeline::kbuffer_arrived(std::uint16_t index) {
-    Thread&             thread  = threads_[index];
+    Thread& thread = threads_[index];
     const std::uint64_t targets = std::exchange(thread.own, 0);
     fill_l1(thread, targets);
     give_to_waiting(thread, targets);
@@ -343,7 +355,7 @@ void FragmentPipeline::invalidate(std::uint32_t block) {
     for (std::uint16_t thread = block_chain_[block].first; thread != nobody; thread = threads_[thread].next)
         if (threads_[thread].generation == l1_.generation()) {
             threads_[thread].generation = orphans_;
-            orphaned                    = true;
+            orphaned = true;
         }
     if (orphaned) --orphans_;
 }
@@ -394,7 +406,7 @@ bool FragmentPipeline::send_texture_request() {
 // The next edge at which time alone lets something happen.
 sim::Cycle FragmentPipeline::next_event() {
     sim::Cycle next = ~sim::Cycle{0};
-    auto       note = [&next, this](sim::Cycle at) {
+    auto note = [&next, this](sim::Cycle at) {
         if (at > cycle()) next = std::min(next, at);
     };
     if (!hits_.empty()) note(hits_.front().ready);

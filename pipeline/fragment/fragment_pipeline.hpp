@@ -1,11 +1,11 @@
-// A quad pipeline: shades quads, many in flight, and reads textures, peeled layers and (on existing hardware) the k-buffer.
+// A quad pipeline: shades quads, many in flight, and reads textures, peeled layers and (on existing hardware) the
+// k-buffer.
 //
 // Modelled: W quads in flight, fewer when the shader's registers run out; ALU issue rate; one texture unit with its L1;
-// pending lines are merged; misses go to memory (textures) or to the ROP partition that owns the pixel (k-buffer); results
-// leave one per cycle, out of order. A k-buffer value is sampled when its L1 lookup hits, or when the memory side serves it;
-// a hit is available after the hit latency, like any texel. A miss on its way when its line is invalidated serves whoever
-// waits for it already, and is not kept.
-// Not modelled: individual instructions; branches.
+// pending lines are merged; misses go to memory (textures) or to the ROP partition that owns the pixel (k-buffer);
+// results leave one per cycle, out of order. A k-buffer value is sampled when its L1 lookup hits, or when the memory
+// side serves it; a hit is available after the hit latency, like any texel. A miss on its way when its line is
+// invalidated serves whoever waits for it already, and is not kept. Not modelled: individual instructions; branches.
 // Source: specification 004, sections 7, 7.1 (t_disp, t_rd, t_done; read value rule).
 #pragma once
 
@@ -26,27 +26,34 @@
 namespace pipeline {
 
 struct FragmentParams {
-    std::uint32_t pipes           = 6;
+    std::uint32_t pipes = 6;
     std::uint32_t quads_in_flight = 256;
-    std::uint32_t alu_per_clk     = 2;
-    std::uint32_t latency         = 30;
-    std::uint32_t registers       = 4096;
+    std::uint32_t alu_per_clk = 2;
+    std::uint32_t latency = 30;
+    std::uint32_t registers = 4096;
 
     static constexpr auto fields() {
         using P = FragmentParams;
         return std::tuple{
             sim::field<&P::pipes>("Quad pipelines, four fragments wide (P)").unit("pipes").range(1, 64),
             sim::field<&P::quads_in_flight>("Quads in flight per pipe (W)").unit("quads").range(1, 4096),
-            sim::field<&P::alu_per_clk>("Vector instructions issued per cycle for a quad").unit("instructions").range(1, 64),
-            sim::field<&P::latency>("Cycles through an empty pipe, without texture reads; a shader that issues for n cycles adds n - 1").unit("cycles").range(1, 10000),
-            sim::field<&P::registers>("128-bit registers per fragment lane, shared by the quads in flight").unit("registers").range(1, 1 << 20)};
+            sim::field<&P::alu_per_clk>("Vector instructions issued per cycle for a quad")
+                .unit("instructions")
+                .range(1, 64),
+            sim::field<&P::latency>(
+                "Cycles through an empty pipe, without texture reads; a shader that issues for n cycles adds n - 1")
+                .unit("cycles")
+                .range(1, 10000),
+            sim::field<&P::registers>("128-bit registers per fragment lane, shared by the quads in flight")
+                .unit("registers")
+                .range(1, 1 << 20)};
     }
 };
 static_assert(sim::fully_described<FragmentParams>);
 
 struct FragmentPipelineStats {
     sim::Counter quads, fragments, issue_cycles, texture_cycles, peel_rejects, kbuffer_reads;
-    sim::HighWater    in_flight_max;
+    sim::HighWater in_flight_max;
     TextureCacheStats l1;
 
     static constexpr auto fields() {
@@ -66,18 +73,19 @@ static_assert(sim::fully_described<FragmentPipelineStats>);
 
 class FragmentPipeline final : public sim::Component {
   public:
-    sim::In<QuadTask>                     quads_in{*this, "quads_in"};
-    sim::Out<Completion>                  done_out{*this, "done_out"};
-    sim::Out<MemoryRequest>               textures_out{*this, "textures_out"}; ///< linked when textures are read
-    sim::In<MemoryResponse>               textures_in{*this, "textures_in"};
-    std::deque<sim::Out<KBufferRead>>     reads_out;        ///< one per ROP partition, when the shader reads the k-buffer
-    std::deque<sim::In<KBufferReadDone>>  reads_in;
+    sim::In<QuadTask> quads_in{*this, "quads_in"};
+    sim::Out<Completion> done_out{*this, "done_out"};
+    sim::Out<MemoryRequest> textures_out{*this, "textures_out"}; ///< linked when textures are read
+    sim::In<MemoryResponse> textures_in{*this, "textures_in"};
+    std::deque<sim::Out<KBufferRead>> reads_out; ///< one per ROP partition, when the shader reads the k-buffer
+    std::deque<sim::In<KBufferReadDone>> reads_in;
     std::deque<sim::In<LineInvalidation>> invalidations_in; ///< one per partition, when this cache is kept coherent
 
     /// @param site null when the shader does not read the k-buffer
     /// @param payloads null likewise
-    FragmentPipeline(sim::Context context, std::uint16_t pipe, const FragmentParams& params, const TextureParams& texture,
-                     const PassContext& pass, std::uint32_t partitions, const ShaderSite* site, QuadPayloads* payloads);
+    FragmentPipeline(sim::Context context, std::uint16_t pipe, const FragmentParams& params,
+                     const TextureParams& texture, const PassContext& pass, std::uint32_t partitions,
+                     const ShaderSite* site, QuadPayloads* payloads);
 
     const FragmentPipelineStats& stats() const { return stats_; }
     /// Drops all k-buffer lines and sets the quads in flight from the registers of the pass; between passes.
@@ -87,80 +95,83 @@ class FragmentPipeline final : public sim::Component {
     static constexpr std::uint16_t nobody = 0xFFFF;
 
     struct Thread {
-        QuadTask      task;
-        std::uint64_t own        = 0; ///< render targets asked for and not answered
-        std::uint64_t merged     = 0; ///< render targets another thread has asked for
-        std::uint32_t block      = 0;
-        std::uint32_t generation = 0; ///< of L1 when the lookup was made, or one of its own when the line was invalidated
-        std::uint32_t alu        = 0; ///< cycles its instructions need to issue
-        std::uint32_t line       = TextureCache::none; ///< texture line this thread is filling
-        std::uint8_t  fetch      = 0;                  ///< next of the quad's read-only fetches
-        std::uint16_t next       = nobody;             ///< in the chain of threads that wait for one block or line
+        QuadTask task;
+        std::uint64_t own = 0;    ///< render targets asked for and not answered
+        std::uint64_t merged = 0; ///< render targets another thread has asked for
+        std::uint32_t block = 0;
+        std::uint32_t generation =
+            0;                 ///< of L1 when the lookup was made, or one of its own when the line was invalidated
+        std::uint32_t alu = 0; ///< cycles its instructions need to issue
+        std::uint32_t line = TextureCache::none; ///< texture line this thread is filling
+        std::uint8_t fetch = 0;                  ///< next of the quad's read-only fetches
+        std::uint16_t next = nobody;             ///< in the chain of threads that wait for one block or line
     };
     struct Chain { ///< of threads, the oldest first
         std::uint16_t first = nobody;
-        std::uint16_t last  = nobody;
+        std::uint16_t last = nobody;
     };
     struct Timed {
         std::uint16_t thread = 0;
-        sim::Cycle    ready  = 0;
+        sim::Cycle ready = 0;
     };
 
     sim::Activity tick() override;
-    bool          take_answers();
-    bool          finish_one();
-    bool          take_hits();
-    bool          read_kbuffer_of_next();
-    bool          issue_next();
-    bool          send_texture_request();
-    void          invalidate(std::uint32_t block);
-    void          start(const QuadTask& task);
-    void          fetch_textures(std::uint16_t thread);
+    bool take_answers();
+    bool finish_one();
+    bool take_hits();
+    bool read_kbuffer_of_next();
+    bool issue_next();
+    bool send_texture_request();
+    void invalidate(std::uint32_t block);
+    void start(const QuadTask& task);
+    void fetch_textures(std::uint16_t thread);
     std::uint64_t fetch_line(const Thread& thread) const;
-    void          texture_arrived(std::uint16_t thread);
-    void          fetched(std::uint16_t thread);
-    void          shaded(std::uint16_t thread);
-    void          after_values(std::uint16_t thread);
-    void          lookup_targets(std::uint16_t index);
-    bool          send_read(std::uint16_t index);
-    void          kbuffer_arrived(std::uint16_t index);
-    void          give_to_waiting(const Thread& from, std::uint64_t targets);
-    void          finish_complete(std::uint32_t block);
-    void          fill_l1(const Thread& thread, std::uint64_t targets);
-    bool          uses_l1() const { return !site_->bypass_l1 && l1_.enabled(); } ///< for the k-buffer
-    void          append(Chain& chain, std::uint16_t thread);
-    void          run_program(const QuadTask& task);
-    bool          is_behind(float depth, QuadId quad, std::size_t pixel) const;
-    std::uint8_t  behind_layer(const QuadTask& task) const;
-    std::uint64_t all_targets() const { return program_targets_ == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << program_targets_) - 1; }
-    sim::Cycle    next_event();
+    void texture_arrived(std::uint16_t thread);
+    void fetched(std::uint16_t thread);
+    void shaded(std::uint16_t thread);
+    void after_values(std::uint16_t thread);
+    void lookup_targets(std::uint16_t index);
+    bool send_read(std::uint16_t index);
+    void kbuffer_arrived(std::uint16_t index);
+    void give_to_waiting(const Thread& from, std::uint64_t targets);
+    void finish_complete(std::uint32_t block);
+    void fill_l1(const Thread& thread, std::uint64_t targets);
+    bool uses_l1() const { return !site_->bypass_l1 && l1_.enabled(); } ///< for the k-buffer
+    void append(Chain& chain, std::uint16_t thread);
+    void run_program(const QuadTask& task);
+    bool is_behind(float depth, QuadId quad, std::size_t pixel) const;
+    std::uint8_t behind_layer(const QuadTask& task) const;
+    std::uint64_t all_targets() const {
+        return program_targets_ == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << program_targets_) - 1;
+    }
+    sim::Cycle next_event();
 
-    std::uint16_t              pipe_;
-    FragmentParams             params_;
-    TextureParams              texture_;
-    const PassContext*         pass_;
-    const ShaderSite*          site_;
-    QuadPayloads*              payloads_;
-    std::uint32_t              program_targets_ = 0;
-    std::uint32_t              line_targets_    = 0;
-    std::vector<std::string>   port_names_;
-    TextureCache               l1_;
-    FragmentPipelineStats      stats_;
-    std::vector<Thread>        threads_;
+    std::uint16_t pipe_;
+    FragmentParams params_;
+    TextureParams texture_;
+    const PassContext* pass_;
+    const ShaderSite* site_;
+    QuadPayloads* payloads_;
+    std::uint32_t program_targets_ = 0;
+    std::uint32_t line_targets_ = 0;
+    std::vector<std::string> port_names_;
+    TextureCache l1_;
+    FragmentPipelineStats stats_;
+    std::vector<Thread> threads_;
     std::vector<std::uint16_t> free_threads_;
-    std::uint32_t              thread_limit_ = 0;
-    std::vector<Chain>         block_chain_; ///< threads that wait for lines of a block
-    std::vector<Chain>         line_chain_;  ///< threads that wait for a texture line of L1
-    FixedQueue<Timed>          shading_;     ///< in the ALUs, in order
-    FixedQueue<Timed>          hits_;        ///< all render targets hit L1, values on their way through the texture unit
-    FixedQueue<std::uint16_t>  finished_;    ///< shader done, result waits for the way out
-    FixedQueue<std::uint16_t>  unsent_;      ///< texture requests the link had no room for
+    std::uint32_t thread_limit_ = 0;
+    std::vector<Chain> block_chain_;     ///< threads that wait for lines of a block
+    std::vector<Chain> line_chain_;      ///< threads that wait for a texture line of L1
+    FixedQueue<Timed> shading_;          ///< in the ALUs, in order
+    FixedQueue<Timed> hits_;             ///< all render targets hit L1, values on their way through the texture unit
+    FixedQueue<std::uint16_t> finished_; ///< shader done, result waits for the way out
+    FixedQueue<std::uint16_t> unsent_;   ///< texture requests the link had no room for
     std::optional<std::uint16_t> read_in_hand_; ///< looked up, request not sent yet
-    sim::Cycle                 issue_free_   = 0;
-    sim::Cycle                 texture_free_ = 0;
-    std::uint32_t              draw_         = ~std::uint32_t{0}; ///< of the youngest quad, for invalidate_on_draw
-    std::uint64_t              passes_       = 0;                 ///< begun so far
-    std::uint32_t              orphans_      = ~std::uint32_t{0}; ///< next generation of lines invalidated on their way
+    sim::Cycle issue_free_ = 0;
+    sim::Cycle texture_free_ = 0;
+    std::uint32_t draw_ = ~std::uint32_t{0};    ///< of the youngest quad, for invalidate_on_draw
+    std::uint64_t passes_ = 0;                  ///< begun so far
+    std::uint32_t orphans_ = ~std::uint32_t{0}; ///< next generation of lines invalidated on their way
 };
 
 } // namespace pipeline

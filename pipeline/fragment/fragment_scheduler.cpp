@@ -13,8 +13,13 @@ constexpr std::uint64_t progress_step = 4096;
 FragmentScheduler::FragmentScheduler(sim::Context context, std::uint32_t pipes, std::uint32_t partitions,
                                      const PassContext& pass, SchedulingPlan& plan, const FlushRule& flush,
                                      QuadPayloads* payloads, std::atomic<std::uint64_t>* progress)
-    : Component(std::move(context)), pass_(&pass), plan_(&plan), flush_(flush), payloads_(payloads),
-      progress_(progress), tracked_(payloads != nullptr || plan.guard != nullptr) {
+    : Component(std::move(context)),
+      pass_(&pass),
+      plan_(&plan),
+      flush_(flush),
+      payloads_(payloads),
+      progress_(progress),
+      tracked_(payloads != nullptr || plan.guard != nullptr) {
     port_names_.reserve(pipes + partitions);
     for (std::uint32_t pipe = 0; pipe < pipes; ++pipe)
         pipes_out.emplace_back(*this, port_names_.emplace_back("pipe" + std::to_string(pipe) + "_out"));
@@ -36,7 +41,7 @@ bool FragmentScheduler::take_commits() {
     for (sim::In<Commit>& port : commits_in) {
         while (port.peek() != nullptr) {
             const Commit commit = port.receive();
-            progress            = true;
+            progress = true;
             if (commit.kind == QuadKind::writeback) {
                 ++acknowledged_;
                 continue;
@@ -84,14 +89,14 @@ void FragmentScheduler::count_order(QuadTask& task) {
     for (std::uint32_t pixel = 0; pixel < 4; ++pixel) {
         if ((task.mask >> pixel & 1) == 0) continue;
         const std::size_t at = static_cast<std::size_t>(quad.y + pixel / 2) * pass_->layout.width + quad.x + pixel % 2;
-        task.order[pixel]    = pixel_order_[at]++;
+        task.order[pixel] = pixel_order_[at]++;
     }
 }
 
 void FragmentScheduler::dispatch(QuadTask task, bool guarded) {
     const Quad& quad = pass_->stream->quads[task.quad];
     if (payloads_ != nullptr && touches_kbuffer(task)) {
-        task.slot                           = payloads_->take();
+        task.slot = payloads_->take();
         (*payloads_)[task.slot].dispatched = cycle();
     }
     if (guarded) plan_->guard->acquire(quad, task.mask);
@@ -110,15 +115,16 @@ void FragmentScheduler::dispatch(QuadTask task, bool guarded) {
 
 bool FragmentScheduler::wake_waiting() {
     if (side_buffer_.empty() || !rescan_) return false;
-    bool          progress = false;
-    std::uint32_t woken    = 0;
+    bool progress = false;
+    std::uint32_t woken = 0;
     ++epoch_;
     rescan_ = false;
     for (std::size_t at = 0; at < side_buffer_.size(); ++at) {
         const Waiting& waiting = side_buffer_[at];
-        const Quad&    quad    = pass_->stream->quads[waiting.task.quad];
-        const auto     key     = plan_->guard->key(quad);
-        if (std::exchange(key_seen_[key], epoch_) == epoch_ && plan_->order_rule) continue; // an older quad of this key goes first
+        const Quad& quad = pass_->stream->quads[waiting.task.quad];
+        const auto key = plan_->guard->key(quad);
+        if (std::exchange(key_seen_[key], epoch_) == epoch_ && plan_->order_rule)
+            continue; // an older quad of this key goes first
         if (plan_->guard->check(quad, waiting.task.mask) != Conflict::none) continue;
         if (woken == plan_->wakes || !can_dispatch(waiting.task)) {
             rescan_ = true;
@@ -145,8 +151,8 @@ bool FragmentScheduler::at_batch_boundary(const QuadTask& task) const {
     return batch_ != ~std::uint32_t{0} && batch != batch_;
 }
 
-// Drain, then command write-back and invalidation in band, then wait for the ROPs' answers. Without `drain` the commands
-// follow the quads already dispatched, and later quads follow at once.
+// Drain, then command write-back and invalidation in band, then wait for the ROPs' answers. Without `drain` the
+// commands follow the quads already dispatched, and later quads follow at once.
 bool FragmentScheduler::advance_flush(bool& progress) {
     if (flush_state_ == FlushState::draining) {
         if (flush_.drain && (in_flight_ != 0 || !side_buffer_.empty())) return false;
@@ -156,11 +162,11 @@ bool FragmentScheduler::advance_flush(bool& progress) {
         QuadTask command;
         if (flush_.writeback && !writeback_sent_) {
             if (!order_out.ready()) return false;
-            command.kind     = QuadKind::writeback;
+            command.kind = QuadKind::writeback;
             command.sequence = sequence_++;
             order_out.send(command);
             writeback_sent_ = true;
-            progress        = true;
+            progress = true;
         }
         command.kind = QuadKind::invalidate;
         for (; flush_.invalidate && invalidates_sent_ < pipes_out.size(); ++invalidates_sent_) {
@@ -182,20 +188,20 @@ sim::Activity FragmentScheduler::accept(bool progress) {
         const QuadTask* input = quads_in.peek();
         if (input == nullptr) break;
         if (flush_state_ == FlushState::none && at_batch_boundary(*input)) {
-            flush_state_      = FlushState::draining;
-            flush_since_      = cycle();
-            acknowledged_     = 0;
+            flush_state_ = FlushState::draining;
+            flush_since_ = cycle();
+            acknowledged_ = 0;
             invalidates_sent_ = 0;
-            writeback_sent_   = false;
+            writeback_sent_ = false;
             ++stats_.flushes;
             batch_ = ~std::uint32_t{0};
         }
         if (flush_state_ != FlushState::none && !advance_flush(progress))
             return progress ? sim::Activity::busy : sim::Activity::memory;
-        const Quad& quad     = pass_->stream->quads[input->quad];
-        const bool  guarded  = plan_->guard != nullptr && touches_kbuffer(*input);
-        Conflict    conflict = guarded ? plan_->guard->check(quad, input->mask) : Conflict::none;
-        const bool  ordered  = guarded && plan_->order_rule && waiting_per_key_[plan_->guard->key(quad)] != 0;
+        const Quad& quad = pass_->stream->quads[input->quad];
+        const bool guarded = plan_->guard != nullptr && touches_kbuffer(*input);
+        Conflict conflict = guarded ? plan_->guard->check(quad, input->mask) : Conflict::none;
+        const bool ordered = guarded && plan_->order_rule && waiting_per_key_[plan_->guard->key(quad)] != 0;
         if (conflict != Conflict::none || ordered) {
             if (side_buffer_.size() >= plan_->side_buffer) {
                 if (!std::exchange(overflowing_, true)) ++stats_.overflow_stalls;
@@ -212,17 +218,16 @@ sim::Activity FragmentScheduler::accept(bool progress) {
             stats_.waiting.note(side_buffer_.size());
             stats_.waiting_max.note(side_buffer_.size());
         } else {
-            if (!can_dispatch(*input))
-                return progress ? sim::Activity::busy : sim::Activity::blocked;
+            if (!can_dispatch(*input)) return progress ? sim::Activity::busy : sim::Activity::blocked;
             QuadTask task = quads_in.receive();
             if (task.mask == 0) ++stats_.bypassed;
             count_order(task);
             dispatch(task, guarded);
         }
         const std::uint32_t triangle = quad.triangle;
-        batch_ = flush_.every_triangles != 0 ? triangle / flush_.every_triangles
-                                             : pass_->stream->triangles[triangle].draw;
-        progress     = true;
+        batch_ =
+            flush_.every_triangles != 0 ? triangle / flush_.every_triangles : pass_->stream->triangles[triangle].draw;
+        progress = true;
         overflowing_ = false;
     }
     if (progress) return sim::Activity::busy;
@@ -232,7 +237,7 @@ sim::Activity FragmentScheduler::accept(bool progress) {
 
 sim::Activity FragmentScheduler::tick() {
     bool progress = take_commits();
-    progress      = wake_waiting() || progress;
+    progress = wake_waiting() || progress;
     return accept(progress);
 }
 

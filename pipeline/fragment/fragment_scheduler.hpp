@@ -1,9 +1,9 @@
 // The fragment scheduler: hands quads to the pipes, and keeps apart what must not fly together.
 //
-// Modelled: one quad per pipe and cycle; a place in the reorder buffer and, for designs whose shader reads the k-buffer, a
-// payload slot are taken at dispatch; an optional dispatch guard with its side buffer (order per key, lookups and wakes
-// per cycle, stall on overflow); the three-part flush between batches.
-// Source: specification 004, sections 7.1 (flush rule) and 7.2 (steps 1-5); Bavoil 2007, section 4.3.1.
+// Modelled: one quad per pipe and cycle; a place in the reorder buffer and, for designs whose shader reads the
+// k-buffer, a payload slot are taken at dispatch; an optional dispatch guard with its side buffer (order per key,
+// lookups and wakes per cycle, stall on overflow); the three-part flush between batches. Source: specification 004,
+// sections 7.1 (flush rule) and 7.2 (steps 1-5); Bavoil 2007, section 4.3.1.
 #pragma once
 
 #include "pipeline/fragment/messages.hpp"
@@ -32,7 +32,8 @@ struct FragmentSchedulerStats {
             sim::field<&S::fragments>("Living fragments dispatched").unit("fragments"),
             sim::field<&S::bypassed>("Quads without a living fragment, which touch no pixel state").unit("quads"),
             sim::field<&S::true_conflicts>("Quads held because a pixel of theirs was in flight").unit("quads"),
-            sim::field<&S::false_conflicts>("Quads held only by the guard's granularity, its hash or its order rule").unit("quads"),
+            sim::field<&S::false_conflicts>("Quads held only by the guard's granularity, its hash or its order rule")
+                .unit("quads"),
             sim::field<&S::inserted>("Quads put into the side buffer").unit("quads"),
             sim::field<&S::overflow_stalls>("Times the rasterizer was stalled by a full side buffer").unit("stalls"),
             sim::field<&S::order_waits>("Quads held because an older quad of their key was waiting").unit("quads"),
@@ -51,10 +52,10 @@ static_assert(sim::fully_described<FragmentSchedulerStats>);
 
 class FragmentScheduler final : public sim::Component {
   public:
-    sim::In<QuadTask>              quads_in{*this, "quads_in"};
-    sim::Out<QuadTask>             order_out{*this, "order_out"};
-    std::deque<sim::Out<QuadTask>> pipes_out;  ///< one per pipe
-    std::deque<sim::In<Commit>>    commits_in; ///< one per ROP partition; only with payloads or a guard
+    sim::In<QuadTask> quads_in{*this, "quads_in"};
+    sim::Out<QuadTask> order_out{*this, "order_out"};
+    std::deque<sim::Out<QuadTask>> pipes_out; ///< one per pipe
+    std::deque<sim::In<Commit>> commits_in;   ///< one per ROP partition; only with payloads or a guard
 
     /// @param plan what guards dispatch; must outlive the scheduler
     /// @param payloads null when no shader reads the k-buffer
@@ -69,51 +70,51 @@ class FragmentScheduler final : public sim::Component {
 
   private:
     struct Waiting {
-        QuadTask   task;
+        QuadTask task;
         sim::Cycle since = 0;
     };
     enum class FlushState : std::uint8_t { none, draining, commanding, acknowledging };
 
     sim::Activity tick() override;
-    bool          take_commits();
-    bool          wake_waiting();
+    bool take_commits();
+    bool wake_waiting();
     sim::Activity accept(bool progress);
-    bool          can_dispatch(const QuadTask& task);
-    void          dispatch(QuadTask task, bool guarded);
-    bool          choose_pipe(const Quad& quad);
-    void          count_order(QuadTask& task);
-    bool          at_batch_boundary(const QuadTask& task) const;
-    bool          advance_flush(bool& progress);
-    bool          touches_kbuffer(const QuadTask& task) const {
+    bool can_dispatch(const QuadTask& task);
+    void dispatch(QuadTask task, bool guarded);
+    bool choose_pipe(const Quad& quad);
+    void count_order(QuadTask& task);
+    bool at_batch_boundary(const QuadTask& task) const;
+    bool advance_flush(bool& progress);
+    bool touches_kbuffer(const QuadTask& task) const {
         return task.mask != 0 && pass_->end != FragmentEnd::depth_colour;
     }
 
-    const PassContext*         pass_;
-    SchedulingPlan*            plan_;
-    FlushRule                  flush_;
-    QuadPayloads*              payloads_;
+    const PassContext* pass_;
+    SchedulingPlan* plan_;
+    FlushRule flush_;
+    QuadPayloads* payloads_;
     std::atomic<std::uint64_t>* progress_;
-    std::vector<std::string>   port_names_;
-    bool                       tracked_; ///< commits come back for every quad that stores
-    FragmentSchedulerStats     stats_;
+    std::vector<std::string> port_names_;
+    bool tracked_; ///< commits come back for every quad that stores
+    FragmentSchedulerStats stats_;
     std::vector<std::uint32_t> pixel_order_; ///< fragments accepted so far, per pixel
-    std::vector<Waiting>       side_buffer_; ///< oldest first
+    std::vector<Waiting> side_buffer_;       ///< oldest first
     std::vector<std::uint32_t> waiting_per_key_;
     std::vector<std::uint32_t> key_seen_; ///< epoch of the last scan that met this key
-    std::uint32_t              epoch_     = 0;
-    bool                       rescan_    = false; ///< something was released since the last fruitless scan
-    std::uint32_t              next_pipe_ = 0;
-    std::uint32_t              chosen_pipe_ = 0; ///< ready at this edge, found by choose_pipe()
+    std::uint32_t epoch_ = 0;
+    bool rescan_ = false; ///< something was released since the last fruitless scan
+    std::uint32_t next_pipe_ = 0;
+    std::uint32_t chosen_pipe_ = 0; ///< ready at this edge, found by choose_pipe()
     // The present stall has been counted.
-    bool                       overflowing_ = false, out_of_slots_ = false, out_of_places_ = false;
-    std::uint32_t              sequence_  = 0;
-    std::uint32_t              in_flight_ = 0; ///< dispatched and not committed; with `tracked_` only
-    FlushState                 flush_state_  = FlushState::none;
-    std::uint32_t              acknowledged_ = 0;
-    std::uint32_t              batch_        = ~std::uint32_t{0};
-    sim::Cycle                 flush_since_  = 0;
-    std::uint32_t              invalidates_sent_ = 0;
-    bool                       writeback_sent_   = false;
+    bool overflowing_ = false, out_of_slots_ = false, out_of_places_ = false;
+    std::uint32_t sequence_ = 0;
+    std::uint32_t in_flight_ = 0; ///< dispatched and not committed; with `tracked_` only
+    FlushState flush_state_ = FlushState::none;
+    std::uint32_t acknowledged_ = 0;
+    std::uint32_t batch_ = ~std::uint32_t{0};
+    sim::Cycle flush_since_ = 0;
+    std::uint32_t invalidates_sent_ = 0;
+    bool writeback_sent_ = false;
 };
 
 } // namespace pipeline

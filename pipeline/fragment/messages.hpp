@@ -19,30 +19,30 @@ inline constexpr std::uint32_t no_slot = ~std::uint32_t{0};
 
 /// A quad on its way from the rasterizer to its ROP.
 struct QuadTask {
-    QuadId                       quad     = 0;
-    std::uint32_t                slot     = no_slot; ///< in QuadPayloads, when the shader reads the k-buffer
-    std::uint32_t                sequence = 0;       ///< place in the reorder buffer's order
-    std::uint8_t                 mask     = 0;       ///< pixels still alive
-    QuadKind                     kind     = QuadKind::quad;
-    std::uint16_t                pipe     = 0;
-    std::array<std::uint32_t, 4> order{};     ///< per pixel: predecessors at that pixel in raster order
-    sim::Cycle                   retired = 0; ///< core cycle the reorder buffer let it go
+    QuadId quad = 0;
+    std::uint32_t slot = no_slot; ///< in QuadPayloads, when the shader reads the k-buffer
+    std::uint32_t sequence = 0;   ///< place in the reorder buffer's order
+    std::uint8_t mask = 0;        ///< pixels still alive
+    QuadKind kind = QuadKind::quad;
+    std::uint16_t pipe = 0;
+    std::array<std::uint32_t, 4> order{}; ///< per pixel: predecessors at that pixel in raster order
+    sim::Cycle retired = 0;               ///< core cycle the reorder buffer let it go
 };
 
 /// A pipe finished the shader of a quad.
 struct Completion {
     std::uint32_t sequence = 0;
-    std::uint8_t  mask     = 0; ///< pixels that survived the shader
+    std::uint8_t mask = 0; ///< pixels that survived the shader
 };
 
 /// A pipe asks for k-buffer lines of one 2x2 block; the values go into the quad's payload slot.
 struct KBufferRead {
-    std::uint32_t block   = 0;
-    std::uint32_t slot    = 0;
+    std::uint32_t block = 0;
+    std::uint32_t slot = 0;
     std::uint64_t targets = 0; ///< bit t: render target t is wanted
-    std::uint32_t draw    = 0;
-    std::uint16_t pipe    = 0;
-    std::uint16_t thread  = 0; ///< comes back in the answer
+    std::uint32_t draw = 0;
+    std::uint16_t pipe = 0;
+    std::uint16_t thread = 0; ///< comes back in the answer
 };
 
 struct KBufferReadDone {
@@ -51,10 +51,10 @@ struct KBufferReadDone {
 
 /// A ROP applied the store of a quad (or finished a write-back command).
 struct Commit {
-    std::uint32_t slot    = no_slot;
-    QuadId        quad    = 0;
-    std::uint8_t  mask    = 0;
-    QuadKind      kind    = QuadKind::quad;
+    std::uint32_t slot = no_slot;
+    QuadId quad = 0;
+    std::uint8_t mask = 0;
+    QuadKind kind = QuadKind::quad;
 };
 
 /// A store to this block became observable; sent to texture caches that are kept coherent.

@@ -13,39 +13,37 @@ namespace pipeline {
 
 /// How the fragments of a pass end.
 enum class FragmentEnd : std::uint8_t {
-    depth_colour,   ///< fixed function: depth test, colour write
-    kbuffer_store,  ///< the shader computed all entries; the ROP stores them
-    kbuffer_blend,  ///< the ROP's programmable blender runs the program
+    depth_colour,  ///< fixed function: depth test, colour write
+    kbuffer_store, ///< the shader computed all entries; the ROP stores them
+    kbuffer_blend, ///< the ROP's programmable blender runs the program
 };
 
 /// A layer that an earlier peeling pass captured, per pixel in row order.
 struct PeeledLayer {
-    std::vector<DepthCode>     depth; ///< farthest where the layer is empty
+    std::vector<DepthCode> depth;     ///< farthest where the layer is empty
     std::vector<std::uint32_t> order; ///< quad that wrote it, ~0 where the layer is empty
 };
 
 struct PassContext {
-    const FragmentStream*  stream  = nullptr;
-    const ModifyProgram*   program = nullptr;
-    const Frame*           frame   = nullptr;
-    SurfaceLayout          layout;
-    FragmentEnd            end          = FragmentEnd::depth_colour;
-    DepthState             depth;
-    bool                   colour_write = false;
-    BlendMode              blend        = BlendMode::replace;
-    std::uint32_t          colour_bytes = 4; ///< per pixel of the colour target
-    std::uint32_t          depth_bytes  = 4;
-    const PeeledLayer*     behind       = nullptr; ///< reject what is not behind this layer
-    PassesSite             peel;
+    const FragmentStream* stream = nullptr;
+    const ModifyProgram* program = nullptr;
+    const Frame* frame = nullptr;
+    SurfaceLayout layout;
+    FragmentEnd end = FragmentEnd::depth_colour;
+    DepthState depth;
+    bool colour_write = false;
+    BlendMode blend = BlendMode::replace;
+    std::uint32_t colour_bytes = 4; ///< per pixel of the colour target
+    std::uint32_t depth_bytes = 4;
+    const PeeledLayer* behind = nullptr; ///< reject what is not behind this layer
+    PassesSite peel;
     const std::vector<DepthCode>* read_only_depth = nullptr; ///< early depth test against a finished depth surface
-    DepthFormat               read_only_format = DepthFormat::d24;
-    DepthFormat               depth_format     = DepthFormat::d24; ///< of the surface that the pass tests and writes
-    std::vector<ShaderCost>   shader_costs;    ///< by draw
-    bool                      textures = false;
+    DepthFormat read_only_format = DepthFormat::d24;
+    DepthFormat depth_format = DepthFormat::d24; ///< of the surface that the pass tests and writes
+    std::vector<ShaderCost> shader_costs;        ///< by draw
+    bool textures = false;
 
-    std::uint32_t draw_of(QuadId quad) const {
-        return stream->triangles[stream->quads[quad].triangle].draw;
-    }
+    std::uint32_t draw_of(QuadId quad) const { return stream->triangles[stream->quads[quad].triangle].draw; }
 };
 
 } // namespace pipeline

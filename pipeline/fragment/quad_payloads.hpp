@@ -14,20 +14,22 @@
 namespace pipeline {
 
 struct QuadPayload {
-    sim::Cycle                   dispatched = 0;
-    sim::Cycle                   first_read = 0; ///< core cycle of the earliest sample
-    sim::Cycle                   last_read  = 0; ///< core cycle of the latest sample
+    sim::Cycle dispatched = 0;
+    sim::Cycle first_read = 0; ///< core cycle of the earliest sample
+    sim::Cycle last_read = 0;  ///< core cycle of the latest sample
 };
 
 class QuadPayloads {
   public:
     QuadPayloads(std::uint32_t slots, std::uint32_t floats_per_pixel)
-        : floats_(floats_per_pixel), payloads_(slots), values_(static_cast<std::size_t>(slots) * 4 * floats_per_pixel),
+        : floats_(floats_per_pixel),
+          payloads_(slots),
+          values_(static_cast<std::size_t>(slots) * 4 * floats_per_pixel),
           versions_(values_.size() / 4) {
         for (std::uint32_t slot = slots; slot > 0; --slot) free_.push_back(slot - 1);
     }
 
-    bool          available() const { return !free_.empty(); }
+    bool available() const { return !free_.empty(); }
     std::uint32_t take() {
         const std::uint32_t slot = free_.back();
         free_.pop_back();
@@ -38,7 +40,7 @@ class QuadPayloads {
     void give_back(std::uint32_t slot) { free_.push_back(slot); }
 
     QuadPayload& operator[](std::uint32_t slot) { return payloads_[slot]; }
-    float*       values(std::uint32_t slot, std::uint32_t pixel) {
+    float* values(std::uint32_t slot, std::uint32_t pixel) {
         return values_.data() + (static_cast<std::size_t>(slot) * 4 + pixel) * floats_;
     }
 
@@ -47,21 +49,21 @@ class QuadPayloads {
     }
 
     /// Copies one render target of one pixel into the slot, with its version and the time it was sampled.
-    void sample(std::uint32_t slot, std::uint32_t pixel, std::uint32_t target, const float* four, PixelVersion version_read,
-                sim::Cycle at) {
+    void sample(std::uint32_t slot, std::uint32_t pixel, std::uint32_t target, const float* four,
+                PixelVersion version_read, sim::Cycle at) {
         float* to = values(slot, pixel) + target * 4;
         for (int channel = 0; channel < 4; ++channel) to[channel] = four[channel];
         version(slot, pixel, target) = version_read;
-        QuadPayload& payload         = payloads_[slot];
-        payload.first_read           = std::min(payload.first_read, at);
-        payload.last_read            = std::max(payload.last_read, at);
+        QuadPayload& payload = payloads_[slot];
+        payload.first_read = std::min(payload.first_read, at);
+        payload.last_read = std::max(payload.last_read, at);
     }
 
   private:
-    std::uint32_t              floats_;
-    std::vector<QuadPayload>   payloads_;
-    std::vector<float>         values_;
-    std::vector<PixelVersion>  versions_;
+    std::uint32_t floats_;
+    std::vector<QuadPayload> payloads_;
+    std::vector<float> values_;
+    std::vector<PixelVersion> versions_;
     std::vector<std::uint32_t> free_;
 };
 

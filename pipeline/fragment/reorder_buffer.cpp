@@ -14,23 +14,23 @@ ReorderBuffer::ReorderBuffer(sim::Context context, const ReorderBufferParams& pa
 }
 
 sim::Activity ReorderBuffer::tick() {
-    const std::size_t mask     = done_.size() - 1;
-    bool              progress = false;
+    const std::size_t mask = done_.size() - 1;
+    bool progress = false;
     for (sim::In<Completion>& port : completions_in)
         while (port.peek() != nullptr) {
-            const Completion completion      = port.receive();
+            const Completion completion = port.receive();
             done_[completion.sequence & mask] = static_cast<std::uint8_t>(complete | completion.mask);
-            progress                          = true;
+            progress = true;
         }
     for (std::uint32_t n = 0; n < params_.retire_per_clk; ++n) {
         const QuadTask* head = order_in.peek();
         if (head == nullptr) break;
-        std::uint8_t& done    = done_[head->sequence & mask];
-        const bool    command = head->kind != QuadKind::quad;
+        std::uint8_t& done = done_[head->sequence & mask];
+        const bool command = head->kind != QuadKind::quad;
         if (!command && (done & complete) == 0) return progress ? sim::Activity::busy : sim::Activity::memory;
         if (!quads_out.ready()) return progress ? sim::Activity::busy : sim::Activity::blocked;
         QuadTask task = order_in.receive();
-        task.retired  = cycle();
+        task.retired = cycle();
         if (!command) task.mask = static_cast<std::uint8_t>(std::exchange(done, 0) & 0xF);
         progress = true;
         if (!command && task.mask == 0) {

@@ -1,8 +1,8 @@
 // The reorder buffer: lets quads leave the fragment stage in the order they were dispatched.
 //
-// Modelled: one place per quad in flight (the capacity of the link from the scheduler), completions in any order, a bounded
-// number of retirements per cycle. Quads without a living fragment are dropped here.
-// Source: specification 004, section 2.1 (output buffer re-sequencing) and section 7 (rob_quads).
+// Modelled: one place per quad in flight (the capacity of the link from the scheduler), completions in any order, a
+// bounded number of retirements per cycle. Quads without a living fragment are dropped here. Source: specification 004,
+// section 2.1 (output buffer re-sequencing) and section 7 (rob_quads).
 #pragma once
 
 #include "pipeline/fragment/messages.hpp"
@@ -16,12 +16,15 @@
 namespace pipeline {
 
 struct ReorderBufferParams {
-    std::uint32_t quads          = 0;
+    std::uint32_t quads = 0;
     std::uint32_t retire_per_clk = 4;
 
     static constexpr auto fields() {
         return std::tuple{
-            sim::field<&ReorderBufferParams::quads>("Quads between dispatch and retirement; 0 = all that fit into the pipes").unit("quads").range(0, 1 << 20),
+            sim::field<&ReorderBufferParams::quads>(
+                "Quads between dispatch and retirement; 0 = all that fit into the pipes")
+                .unit("quads")
+                .range(0, 1 << 20),
             sim::field<&ReorderBufferParams::retire_per_clk>("Quads retired per cycle").unit("quads").range(1, 64)};
     }
 };
@@ -40,9 +43,9 @@ static_assert(sim::fully_described<ReorderBufferStats>);
 
 class ReorderBuffer final : public sim::Component {
   public:
-    sim::In<QuadTask>               order_in{*this, "order_in"}; ///< in dispatch order; held in the link until complete
-    std::deque<sim::In<Completion>> completions_in;              ///< one per pipe
-    sim::Out<QuadTask>              quads_out{*this, "quads_out"};
+    sim::In<QuadTask> order_in{*this, "order_in"};  ///< in dispatch order; held in the link until complete
+    std::deque<sim::In<Completion>> completions_in; ///< one per pipe
+    sim::Out<QuadTask> quads_out{*this, "quads_out"};
 
     /// @param quads places, equal to the capacity of the order_in link
     ReorderBuffer(sim::Context context, const ReorderBufferParams& params, std::uint32_t pipes, std::uint32_t quads);
@@ -54,10 +57,10 @@ class ReorderBuffer final : public sim::Component {
 
     sim::Activity tick() override;
 
-    ReorderBufferParams       params_;
-    std::vector<std::string>  port_names_;
+    ReorderBufferParams params_;
+    std::vector<std::string> port_names_;
     std::vector<std::uint8_t> done_; ///< by sequence modulo size: `complete` | surviving pixels
-    ReorderBufferStats        stats_;
+    ReorderBufferStats stats_;
 };
 
 } // namespace pipeline

@@ -7,7 +7,7 @@ namespace pipeline {
 TextureCache::TextureCache(const TextureParams& params, std::uint32_t line_targets)
     : ways_(params.l1_ways), line_targets_(line_targets) {
     const std::size_t line_bytes = std::size_t{TextureParams::line_bytes} * std::max(line_targets, 1U);
-    sets_                        = params.l1_bytes / (line_bytes * ways_);
+    sets_ = params.l1_bytes / (line_bytes * ways_);
     if (sets_ == 0 && params.l1_bytes >= line_bytes) { // smaller than one full set: as many ways as fit
         ways_ = static_cast<std::uint32_t>(params.l1_bytes / line_bytes);
         sets_ = 1;
@@ -39,7 +39,7 @@ std::uint32_t TextureCache::find(std::uint64_t tag) {
 std::uint32_t TextureCache::victim(std::uint64_t tag) {
     if (sets_ == 0) return none;
     const std::size_t first = set_of(tag) * ways_;
-    std::uint32_t     best  = none;
+    std::uint32_t best = none;
     for (std::size_t at = first; at < first + ways_; ++at) {
         if (lines_[at].pending) continue;
         if (best == none || lines_[at].used < lines_[best].used) best = static_cast<std::uint32_t>(at);
@@ -55,14 +55,12 @@ std::uint32_t TextureCache::reserve_texture(std::uint64_t line) {
 }
 
 std::uint32_t TextureCache::put_kbuffer(std::uint32_t block, std::uint32_t part) {
-    const std::uint64_t tag   = kbuffer_tag(block, part);
+    const std::uint64_t tag = kbuffer_tag(block, part);
     const std::uint32_t index = find(tag);
     return index != none ? index : victim(tag);
 }
 
-void TextureCache::drop_kbuffer_lines() {
-    ++generation_;
-}
+void TextureCache::drop_kbuffer_lines() { ++generation_; }
 
 void TextureCache::drop_kbuffer_block(std::uint32_t block, std::uint32_t parts) {
     for (std::uint32_t part = 0; part < parts; ++part)

@@ -1,9 +1,9 @@
 // The texture L1 cache of one fragment pipe.
 //
-// Modelled: set-associative, LRU; lines of material textures and of peeled layers as tags with a pending state (read-only
-// data needs no bytes); lines of the k-buffer as snapshots of the bytes and versions at the time they were sampled,
-// because this cache is not coherent with the ROPs.
-// Source: specification 004, section 7.1 (read value rule) and section 7 (tex_l1 parameters).
+// Modelled: set-associative, LRU; lines of material textures and of peeled layers as tags with a pending state
+// (read-only data needs no bytes); lines of the k-buffer as snapshots of the bytes and versions at the time they were
+// sampled, because this cache is not coherent with the ROPs. Source: specification 004, section 7.1 (read value rule)
+// and section 7 (tex_l1 parameters).
 #pragma once
 
 #include "pipeline/output/kbuffer_memory.hpp"
@@ -16,22 +16,29 @@
 namespace pipeline {
 
 struct TextureParams {
-    std::uint32_t l1_bytes            = 4096;
-    std::uint32_t l1_ways             = 4;
-    std::uint32_t hit_latency         = 40;
-    std::uint32_t cycles_per_fetch    = 1;
-    std::uint32_t cycles_per_rgba32f  = 4;
+    std::uint32_t l1_bytes = 4096;
+    std::uint32_t l1_ways = 4;
+    std::uint32_t hit_latency = 40;
+    std::uint32_t cycles_per_fetch = 1;
+    std::uint32_t cycles_per_rgba32f = 4;
 
     static constexpr std::uint32_t line_bytes = 64; ///< 4x4 RGBA8 texels, or one 2x2 block of an RGBA32F target
 
     static constexpr auto fields() {
         using P = TextureParams;
-        return std::tuple{
-            sim::field<&P::l1_bytes>("Texture L1 cache of one pipe, in lines of 64 bytes; 0 = none").unit("bytes").range(0, 1 << 28),
-            sim::field<&P::l1_ways>("Ways of the texture L1 cache").unit("ways").range(1, 64),
-            sim::field<&P::hit_latency>("From lookup to filtered value, when the line is in L1").unit("cycles").range(1, 10000),
-            sim::field<&P::cycles_per_fetch>("Texture unit time of one RGBA8 or depth fetch of a quad").unit("cycles").range(1, 64),
-            sim::field<&P::cycles_per_rgba32f>("Texture unit time of one RGBA32F fetch of a quad").unit("cycles").range(1, 64)};
+        return std::tuple{sim::field<&P::l1_bytes>("Texture L1 cache of one pipe, in lines of 64 bytes; 0 = none")
+                              .unit("bytes")
+                              .range(0, 1 << 28),
+                          sim::field<&P::l1_ways>("Ways of the texture L1 cache").unit("ways").range(1, 64),
+                          sim::field<&P::hit_latency>("From lookup to filtered value, when the line is in L1")
+                              .unit("cycles")
+                              .range(1, 10000),
+                          sim::field<&P::cycles_per_fetch>("Texture unit time of one RGBA8 or depth fetch of a quad")
+                              .unit("cycles")
+                              .range(1, 64),
+                          sim::field<&P::cycles_per_rgba32f>("Texture unit time of one RGBA32F fetch of a quad")
+                              .unit("cycles")
+                              .range(1, 64)};
     }
 };
 static_assert(sim::fully_described<TextureParams>);
@@ -42,11 +49,13 @@ struct TextureCacheStats {
     static constexpr auto fields() {
         using S = TextureCacheStats;
         return std::tuple{
-            sim::field<&S::texture_hits>("Texture and depth-layer lookups that hit a present or pending line").unit("lines"),
+            sim::field<&S::texture_hits>("Texture and depth-layer lookups that hit a present or pending line")
+                .unit("lines"),
             sim::field<&S::texture_misses>("Texture and depth-layer lookups that went to memory").unit("lines"),
             sim::field<&S::kbuffer_hits>("k-buffer lookups that hit").unit("lines"),
             sim::field<&S::kbuffer_misses>("k-buffer lookups that went to the memory side").unit("lines"),
-            sim::field<&S::kbuffer_merged>("k-buffer lookups that joined a pending miss of the same line").unit("lines"),
+            sim::field<&S::kbuffer_merged>("k-buffer lookups that joined a pending miss of the same line")
+                .unit("lines"),
             sim::field<&S::invalidations>("Times all or some k-buffer lines were dropped").unit("events")};
     }
 };
@@ -66,18 +75,20 @@ class TextureCache {
     std::uint32_t find_texture(std::uint64_t line) { return find(line << 1U); }
     /// Reserves a line whose data is on its way; none when every way of the set is pending.
     std::uint32_t reserve_texture(std::uint64_t line);
-    bool          pending(std::uint32_t index) const { return lines_[index].pending; }
-    void          filled(std::uint32_t index) { lines_[index].pending = false; }
+    bool pending(std::uint32_t index) const { return lines_[index].pending; }
+    void filled(std::uint32_t index) { lines_[index].pending = false; }
 
     /// Line `part` (target / line_targets) of block `block`.
     std::uint32_t find_kbuffer(std::uint32_t block, std::uint32_t part) { return find(kbuffer_tag(block, part)); }
     /// Puts a line in, replacing the least recently used one; none when every way is pending.
     std::uint32_t put_kbuffer(std::uint32_t block, std::uint32_t part);
     /// Bytes of pixel `pixel`, render target `target` within the line; 4 floats.
-    float*        data(std::uint32_t index, std::uint32_t pixel, std::uint32_t target) {
+    float* data(std::uint32_t index, std::uint32_t pixel, std::uint32_t target) {
         return data_.data() + ((static_cast<std::size_t>(index) * 4 + pixel) * line_targets_ + target) * 4;
     }
-    PixelVersion& version(std::uint32_t index, std::uint32_t pixel) { return versions_[index * std::size_t{4} + pixel]; }
+    PixelVersion& version(std::uint32_t index, std::uint32_t pixel) {
+        return versions_[index * std::size_t{4} + pixel];
+    }
 
     void drop_kbuffer_lines();
     void drop_kbuffer_block(std::uint32_t block, std::uint32_t parts);
@@ -86,26 +97,26 @@ class TextureCache {
 
   private:
     struct Line {
-        std::uint64_t tag        = ~std::uint64_t{0};
-        std::uint64_t used       = 0;
+        std::uint64_t tag = ~std::uint64_t{0};
+        std::uint64_t used = 0;
         std::uint32_t generation = 0;
-        bool          pending    = false;
+        bool pending = false;
     };
     static constexpr std::uint64_t kbuffer_tag(std::uint32_t block, std::uint32_t part) {
         return (static_cast<std::uint64_t>(block) * 64 + part) << 1U | 1U;
     }
-    std::size_t   set_of(std::uint64_t tag) const;
+    std::size_t set_of(std::uint64_t tag) const;
     std::uint32_t find(std::uint64_t tag);
     std::uint32_t victim(std::uint64_t tag);
 
-    std::uint32_t             ways_;
-    std::uint32_t             line_targets_;
-    std::size_t               sets_ = 0;
-    std::vector<Line>         lines_;
-    std::vector<float>        data_;
+    std::uint32_t ways_;
+    std::uint32_t line_targets_;
+    std::size_t sets_ = 0;
+    std::vector<Line> lines_;
+    std::vector<float> data_;
     std::vector<PixelVersion> versions_;
-    std::uint64_t             clock_      = 0;
-    std::uint32_t             generation_ = 0;
+    std::uint64_t clock_ = 0;
+    std::uint32_t generation_ = 0;
 };
 
 } // namespace pipeline

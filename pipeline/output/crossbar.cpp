@@ -4,7 +4,8 @@
 
 namespace pipeline {
 
-Crossbar::Crossbar(sim::Context context, const CrossbarParams& params, const PassContext& pass, std::uint32_t partitions)
+Crossbar::Crossbar(sim::Context context, const CrossbarParams& params, const PassContext& pass,
+                   std::uint32_t partitions)
     : Component(std::move(context)), params_(params), pass_(&pass), link_free_(partitions) {
     port_names_.reserve(partitions);
     for (std::uint32_t rop = 0; rop < partitions; ++rop)
@@ -13,9 +14,12 @@ Crossbar::Crossbar(sim::Context context, const CrossbarParams& params, const Pas
 
 std::uint32_t Crossbar::bytes_per_fragment() const {
     switch (pass_->end) {
-    case FragmentEnd::kbuffer_store: return pass_->program->bytes_per_pixel();
-    case FragmentEnd::kbuffer_blend: return pass_->program->floats_per_entry() * 4;
-    case FragmentEnd::depth_colour: break;
+    case FragmentEnd::kbuffer_store:
+        return pass_->program->bytes_per_pixel();
+    case FragmentEnd::kbuffer_blend:
+        return pass_->program->floats_per_entry() * 4;
+    case FragmentEnd::depth_colour:
+        break;
     }
     return 4 + (pass_->colour_write ? pass_->colour_bytes : 0);
 }
@@ -36,15 +40,15 @@ sim::Activity Crossbar::tick() {
             progress = true;
             continue;
         }
-        const Quad&         quad = pass_->stream->quads[head->quad];
-        const std::uint32_t rop  = pass_->layout.partition_of(quad.x, quad.y);
+        const Quad& quad = pass_->stream->quads[head->quad];
+        const std::uint32_t rop = pass_->layout.partition_of(quad.x, quad.y);
         if (link_free_[rop] > cycle()) {
             if (!progress) wake_at(link_free_[rop]);
             return progress ? sim::Activity::busy : sim::Activity::blocked;
         }
         if (!partitions_out[rop].ready()) return progress ? sim::Activity::busy : sim::Activity::blocked;
         const auto bytes = static_cast<std::uint32_t>(std::popcount(head->mask)) * bytes_per_fragment();
-        link_free_[rop]  = cycle() + (bytes + params_.bytes_per_clk - 1) / params_.bytes_per_clk;
+        link_free_[rop] = cycle() + (bytes + params_.bytes_per_clk - 1) / params_.bytes_per_clk;
         partitions_out[rop].send(quads_in.receive());
         ++stats_.quads;
         stats_.bytes += bytes;

@@ -17,14 +17,16 @@ namespace pipeline {
 
 struct CrossbarParams {
     std::uint32_t bytes_per_clk = 64;
-    std::uint32_t latency       = 10;
-    std::uint32_t queue         = 16;
+    std::uint32_t latency = 10;
+    std::uint32_t queue = 16;
 
     static constexpr auto fields() {
         using P = CrossbarParams;
         return std::tuple{
             sim::field<&P::bytes_per_clk>("Bytes per cycle to one ROP partition").unit("bytes").range(1, 4096),
-            sim::field<&P::latency>("Cycles from one side to the other, in both directions").unit("cycles").range(1, 1000),
+            sim::field<&P::latency>("Cycles from one side to the other, in both directions")
+                .unit("cycles")
+                .range(1, 1000),
             sim::field<&P::queue>("Quads between the crossbar and one partition").unit("quads").range(1, 4096)};
     }
 };
@@ -42,7 +44,7 @@ static_assert(sim::fully_described<CrossbarStats>);
 
 class Crossbar final : public sim::Component {
   public:
-    sim::In<QuadTask>              quads_in{*this, "quads_in"};
+    sim::In<QuadTask> quads_in{*this, "quads_in"};
     std::deque<sim::Out<QuadTask>> partitions_out;
 
     Crossbar(sim::Context context, const CrossbarParams& params, const PassContext& pass, std::uint32_t partitions);
@@ -53,13 +55,13 @@ class Crossbar final : public sim::Component {
 
   private:
     sim::Activity tick() override;
-    bool          broadcast(const QuadTask& command);
+    bool broadcast(const QuadTask& command);
 
-    CrossbarParams           params_;
-    const PassContext*       pass_;
+    CrossbarParams params_;
+    const PassContext* pass_;
     std::vector<std::string> port_names_;
-    std::vector<sim::Cycle>  link_free_;
-    CrossbarStats            stats_;
+    std::vector<sim::Cycle> link_free_;
+    CrossbarStats stats_;
 };
 
 } // namespace pipeline

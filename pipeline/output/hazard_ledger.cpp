@@ -15,7 +15,7 @@ void StoreHistory::tile_visible(std::uint32_t tile, sim::Cycle at) {
 bool HazardLedger::book(std::uint32_t block, std::uint32_t pixel, std::uint32_t quad, const Read& read) {
     if (read.oldest == read.order && read.newest == read.order) return false;
     const StoreHistory::Store& aggressor = history_->store(block, pixel);
-    HazardClass                kind      = HazardClass::h3_stale_line;
+    HazardClass kind = HazardClass::h3_stale_line;
     if (read.oldest != read.newest)
         kind = HazardClass::h4_torn_read;
     else if (read.cycle < aggressor.retired)

@@ -18,12 +18,12 @@ enum class HazardClass : std::uint8_t {
 /// One victim with the predecessor whose update it overwrites: the latest one that its read missed.
 struct HazardPair {
     std::uint16_t x = 0, y = 0;
-    HazardClass   kind      = HazardClass::h1_in_flight;
-    std::uint32_t victim    = 0; ///< QuadId
+    HazardClass kind = HazardClass::h1_in_flight;
+    std::uint32_t victim = 0;    ///< QuadId
     std::uint32_t aggressor = 0; ///< QuadId
-    std::uint32_t missing   = 0; ///< predecessors missing from the value read (staleness in versions)
-    sim::Cycle    read      = 0; ///< core cycle the victim sampled its value
-    sim::Cycle    write     = 0; ///< core cycle the aggressor's store was applied
+    std::uint32_t missing = 0;   ///< predecessors missing from the value read (staleness in versions)
+    sim::Cycle read = 0;         ///< core cycle the victim sampled its value
+    sim::Cycle write = 0;        ///< core cycle the aggressor's store was applied
 };
 
 struct HazardCounts {

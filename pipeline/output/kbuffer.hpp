@@ -2,9 +2,9 @@
 // implemented in models/programs), and *when* and under which protection that happens (KBufferDesign, implemented in
 // models/kbuffers). The pipeline knows nothing else about either.
 //
-// Layout of a pixel: `k` entries of `floats_per_entry` floats, entry 0 first, packed without gaps and padded to a multiple
-// of four floats. Four consecutive floats are one RGBA32F render target, so rgbz uses one target per entry and z packs
-// four depths into each (specification 004, section 2.3).
+// Layout of a pixel: `k` entries of `floats_per_entry` floats, entry 0 first, packed without gaps and padded to a
+// multiple of four floats. Four consecutive floats are one RGBA32F render target, so rgbz uses one target per entry and
+// z packs four depths into each (specification 004, section 2.3).
 #pragma once
 
 #include <cstdint>
@@ -27,7 +27,7 @@ class ModifyProgram {
   public:
     virtual ~ModifyProgram() = default;
 
-    virtual std::string_view id() const      = 0;
+    virtual std::string_view id() const = 0;
     virtual std::string_view summary() const = 0;
     /// Entries per pixel, 1 to 64.
     std::uint32_t k() const { return k_; }
@@ -38,10 +38,10 @@ class ModifyProgram {
     std::uint32_t floats_per_pixel() const { return targets() * 4; }
     std::uint32_t bytes_per_pixel() const { return targets() * 16; }
 
-    virtual ProgramCost cost() const             = 0;
-    virtual OrderNeed   order_need() const       = 0;
-    virtual bool        needs_texture() const    = 0; ///< fetches a table: no programmable blender can run it
-    virtual bool        needs_colour() const     = 0; ///< reads more of the fragment than its depth
+    virtual ProgramCost cost() const = 0;
+    virtual OrderNeed order_need() const = 0;
+    virtual bool needs_texture() const = 0; ///< fetches a table: no programmable blender can run it
+    virtual bool needs_colour() const = 0;  ///< reads more of the fragment than its depth
     /// Index of the depth within an entry.
     virtual std::uint32_t depth_slot() const = 0;
 

@@ -43,52 +43,52 @@ enum class PeelRule : std::uint8_t {
 
 /// What separates two batches of primitives on hardware that does not protect them.
 struct FlushRule {
-    std::uint32_t every_triangles = 0;     ///< 0 = never
-    bool          every_draw      = false; ///< at every draw boundary
-    bool          drain           = true;  ///< wait until all quads in flight have stored
-    bool          writeback       = true;  ///< make all stores observable
-    bool          invalidate      = true;  ///< drop the texture caches' k-buffer lines
-    bool          active() const { return every_triangles != 0 || every_draw; }
+    std::uint32_t every_triangles = 0; ///< 0 = never
+    bool every_draw = false;           ///< at every draw boundary
+    bool drain = true;                 ///< wait until all quads in flight have stored
+    bool writeback = true;             ///< make all stores observable
+    bool invalidate = true;            ///< drop the texture caches' k-buffer lines
+    bool active() const { return every_triangles != 0 || every_draw; }
 };
 
 struct ShaderSite {
-    Visibility       visibility    = Visibility::writeback;
-    TextureCoherence coherence     = TextureCoherence::invalidate_on_draw;
-    bool             bypass_l1     = false; ///< k-buffer reads do not look into the texture cache
-    bool             atomic_reads  = false; ///< one read returns all render targets of a pixel at one instant
-    bool             write_through = false; ///< a store cleans its tile at once
-    FlushRule        flush;
+    Visibility visibility = Visibility::writeback;
+    TextureCoherence coherence = TextureCoherence::invalidate_on_draw;
+    bool bypass_l1 = false;     ///< k-buffer reads do not look into the texture cache
+    bool atomic_reads = false;  ///< one read returns all render targets of a pixel at one instant
+    bool write_through = false; ///< a store cleans its tile at once
+    FlushRule flush;
 };
 
 struct BlenderSite {
-    BlendInterlock interlock  = BlendInterlock::stall;
-    std::uint32_t  lanes      = 4;  ///< scalar operations per cycle of one ROP's blender
-    std::uint32_t  port_bytes = 32; ///< tile cache port of one ROP, bytes per cycle
-    std::uint32_t  latency    = 16; ///< cycles from read to write
+    BlendInterlock interlock = BlendInterlock::stall;
+    std::uint32_t lanes = 4;       ///< scalar operations per cycle of one ROP's blender
+    std::uint32_t port_bytes = 32; ///< tile cache port of one ROP, bytes per cycle
+    std::uint32_t latency = 16;    ///< cycles from read to write
 };
 
 struct PassesSite {
-    PeelRule    rule         = PeelRule::exact;
-    double      eps          = 1e-4;
+    PeelRule rule = PeelRule::exact;
+    double eps = 1e-4;
     DepthFormat depth_format = DepthFormat::d32f;
 };
 
 /// Hardware in front of the pipes, when the design has any.
 struct SchedulingPlan {
     std::unique_ptr<DispatchGuard> guard;
-    std::uint32_t                  side_buffer    = 32; ///< quads that wait for a conflict
-    std::uint32_t                  lookups        = 4;  ///< quads tested per cycle
-    std::uint32_t                  wakes          = 1;  ///< waiting quads dispatched per cycle
-    std::uint32_t                  lookup_latency = 2;  ///< cycles
-    DispatchPolicy                 policy         = DispatchPolicy::any_pipe;
-    bool                           order_rule     = true; ///< a quad also waits behind older waiting quads of its key
+    std::uint32_t side_buffer = 32;   ///< quads that wait for a conflict
+    std::uint32_t lookups = 4;        ///< quads tested per cycle
+    std::uint32_t wakes = 1;          ///< waiting quads dispatched per cycle
+    std::uint32_t lookup_latency = 2; ///< cycles
+    DispatchPolicy policy = DispatchPolicy::any_pipe;
+    bool order_rule = true; ///< a quad also waits behind older waiting quads of its key
 };
 
 struct KBufferPlan {
-    UpdateSite     site = UpdateSite::fragment_shader;
-    ShaderSite     shader;
-    BlenderSite    blender;
-    PassesSite     passes;
+    UpdateSite site = UpdateSite::fragment_shader;
+    ShaderSite shader;
+    BlenderSite blender;
+    PassesSite passes;
     SchedulingPlan scheduling;
 };
 
@@ -96,7 +96,7 @@ class KBufferDesign {
   public:
     virtual ~KBufferDesign() = default;
 
-    virtual std::string_view id() const      = 0;
+    virtual std::string_view id() const = 0;
     virtual std::string_view summary() const = 0;
     /// Why the design cannot run this program; empty when it can.
     virtual std::string refuses(const ModifyProgram& program) const = 0;

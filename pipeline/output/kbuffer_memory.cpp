@@ -22,26 +22,27 @@ void KBufferMemory::clear() {
     for (std::size_t at = 0; at < latest_.size(); at += floats_)
         std::copy(initial.begin(), initial.end(), latest_.begin() + static_cast<std::ptrdiff_t>(at));
     std::fill(latest_versions_.begin(), latest_versions_.end(), PixelVersion{});
-    memory_          = split_ ? latest_ : std::vector<float>{};
+    memory_ = split_ ? latest_ : std::vector<float>{};
     memory_versions_ = split_ ? latest_versions_ : std::vector<PixelVersion>{};
 }
 
 void KBufferMemory::publish_tile(std::uint32_t tile) {
     if (!split_) return;
-    const auto first  = static_cast<std::ptrdiff_t>(at(tile * 4, 0));
+    const auto first = static_cast<std::ptrdiff_t>(at(tile * 4, 0));
     const auto floats = static_cast<std::ptrdiff_t>(16 * floats_);
     std::copy(latest_.begin() + first, latest_.begin() + first + floats, memory_.begin() + first);
     const std::ptrdiff_t pixel = static_cast<std::ptrdiff_t>(tile) * 16;
-    std::copy(latest_versions_.begin() + pixel, latest_versions_.begin() + pixel + 16, memory_versions_.begin() + pixel);
+    std::copy(latest_versions_.begin() + pixel, latest_versions_.begin() + pixel + 16,
+              memory_versions_.begin() + pixel);
 }
 
 std::vector<float> KBufferMemory::image() const {
     std::vector<float> image(static_cast<std::size_t>(layout_.width) * layout_.height * floats_);
-    auto               out = image.begin();
+    auto out = image.begin();
     for (std::uint32_t y = 0; y < layout_.height; ++y)
         for (std::uint32_t x = 0; x < layout_.width; ++x) {
             const float* pixel = latest_.data() + at(layout_.block_of(x, y), y % 2 * 2 + x % 2);
-            out                = std::copy(pixel, pixel + floats_, out);
+            out = std::copy(pixel, pixel + floats_, out);
         }
     return image;
 }

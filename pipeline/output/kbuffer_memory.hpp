@@ -1,8 +1,8 @@
 // The bytes of the k-buffer, in the two versions the hardware can hold of them.
 //
-// `latest` is what the ROP's tile cache or memory holds last; `memory` is what a read that bypasses the ROP's tile cache
-// sees. The second plane exists only where a design makes the difference observable. Each block belongs to one ROP
-// partition, and only that partition's component touches it during a run.
+// `latest` is what the ROP's tile cache or memory holds last; `memory` is what a read that bypasses the ROP's tile
+// cache sees. The second plane exists only where a design makes the difference observable. Each block belongs to one
+// ROP partition, and only that partition's component touches it during a run.
 //
 // With every pixel travels its version: the number of stores it contains by position (stores), and how many fragments
 // are really in it (chain): chain < stores where an update was lost.
@@ -17,7 +17,7 @@ namespace pipeline {
 
 struct PixelVersion {
     std::uint32_t stores = 0;
-    std::uint32_t chain  = 0;
+    std::uint32_t chain = 0;
 };
 
 class KBufferMemory {
@@ -26,10 +26,12 @@ class KBufferMemory {
     KBufferMemory(const SurfaceLayout& layout, const ModifyProgram& program, bool split);
 
     const SurfaceLayout& layout() const { return layout_; }
-    std::uint32_t        floats_per_pixel() const { return floats_; }
+    std::uint32_t floats_per_pixel() const { return floats_; }
 
-    float*        latest(std::uint32_t block, std::uint32_t pixel) { return latest_.data() + at(block, pixel); }
-    PixelVersion& latest_version(std::uint32_t block, std::uint32_t pixel) { return latest_versions_[block * 4 + pixel]; }
+    float* latest(std::uint32_t block, std::uint32_t pixel) { return latest_.data() + at(block, pixel); }
+    PixelVersion& latest_version(std::uint32_t block, std::uint32_t pixel) {
+        return latest_versions_[block * 4 + pixel];
+    }
 
     /// What a read sees: the memory plane when `rop_view` is false and the planes are split.
     const float* seen(std::uint32_t block, std::uint32_t pixel, bool rop_view) const {
@@ -54,11 +56,11 @@ class KBufferMemory {
         return (static_cast<std::size_t>(block) * 4 + pixel) * floats_;
     }
 
-    SurfaceLayout             layout_;
-    const ModifyProgram*      program_;
-    std::uint32_t             floats_;
-    bool                      split_;
-    std::vector<float>        latest_, memory_;
+    SurfaceLayout layout_;
+    const ModifyProgram* program_;
+    std::uint32_t floats_;
+    bool split_;
+    std::vector<float> latest_, memory_;
     std::vector<PixelVersion> latest_versions_, memory_versions_;
 };
 

@@ -19,7 +19,9 @@ class ProgrammableBlender {
   public:
     /// @param rops blenders of the partition
     ProgrammableBlender(const BlenderSite& site, const ModifyProgram& program, std::uint32_t rops)
-        : site_(site), rops_(rops), inside_(64),
+        : site_(site),
+          rops_(rops),
+          inside_(site.latency + 1),
           cost_(std::max({1U, (program.cost().operations + site.lanes - 1) / site.lanes,
                           (2 * program.bytes_per_pixel() + site.port_bytes - 1) / site.port_bytes})) {}
 
@@ -32,7 +34,6 @@ class ProgrammableBlender {
     /// First cycle at which these pixels may enter; `now` when nothing holds them back.
     sim::Cycle may_enter(std::uint32_t block, std::uint8_t mask, sim::Cycle now) {
         while (!inside_.empty() && inside_.front().written <= now) inside_.pop();
-        if (inside_.full()) return inside_.front().written;
         if (site_.interlock != BlendInterlock::stall) return now;
         sim::Cycle at = now;
         for (std::uint32_t i = 0; i < inside_.size(); ++i)
@@ -48,14 +49,14 @@ class ProgrammableBlender {
 
   private:
     struct Inside {
-        std::uint32_t block   = 0;
-        std::uint8_t  mask    = 0;
-        sim::Cycle    written = 0;
+        std::uint32_t block = 0;
+        std::uint8_t mask = 0;
+        sim::Cycle written = 0;
     };
-    BlenderSite        site_;
-    std::uint32_t      rops_;
+    BlenderSite site_;
+    std::uint32_t rops_;
     FixedQueue<Inside> inside_;
-    std::uint32_t      cost_;
+    std::uint32_t cost_;
 };
 
 } // namespace pipeline

@@ -1,10 +1,11 @@
-// A ROP partition: the raster operations of the pixels it owns, with their tile caches, in front of one memory partition.
+// A ROP partition: the raster operations of the pixels it owns, with their tile caches, in front of one memory
+// partition.
 //
 // Modelled: in-order input queue whose tile lookups run ahead of execution; tile caches for depth, colour and k-buffer;
-// depth test, colour write and fixed blending; stores of k-buffer values computed by the shader; the programmable blender with its
-// interlock; k-buffer reads from texture units, served from the tile cache or from memory as the visibility rule says;
-// write-back on replacement, on command and at the end of a pass; clears and copies as streams of memory traffic.
-// Every access to a pixel's state happens in this one component, reads before writes within a cycle.
+// depth test, colour write and fixed blending; stores of k-buffer values computed by the shader; the programmable
+// blender with its interlock; k-buffer reads from texture units, served from the tile cache or from memory as the
+// visibility rule says; write-back on replacement, on command and at the end of a pass; clears and copies as streams of
+// memory traffic. Every access to a pixel's state happens in this one component, reads before writes within a cycle.
 // Not modelled: stencil, logic operations, compression, multisampling.
 // Source: specification 004, sections 2.1, 7 (rop parameters), 7.1 (t_rop, t_vis), 7.3, 7.6.
 #pragma once
@@ -28,30 +29,39 @@
 namespace pipeline {
 
 struct RopParams {
-    std::uint32_t units         = 16;
+    std::uint32_t units = 16;
     std::uint32_t bytes_per_clk = 16;
-    std::uint32_t cache_tiles   = 32;
-    std::uint32_t queue         = 32;
+    std::uint32_t cache_tiles = 32;
+    std::uint32_t queue = 32;
     std::uint32_t reads_per_clk = 1;
-    std::uint32_t read_latency  = 280;
-    bool          fast_clear    = false;
+    std::uint32_t read_latency = 280;
+    bool fast_clear = false;
 
     static constexpr auto fields() {
         using P = RopParams;
         return std::tuple{
             sim::field<&P::units>("ROPs of all partitions together").unit("rops").range(1, 1024),
-            sim::field<&P::bytes_per_clk>("Bytes one ROP moves to or from its tile cache per cycle").unit("bytes").range(1, 1024),
-            sim::field<&P::cache_tiles>("4x4-pixel tiles in each tile cache of a partition").unit("tiles").range(1, 65534),
+            sim::field<&P::bytes_per_clk>("Bytes one ROP moves to or from its tile cache per cycle")
+                .unit("bytes")
+                .range(1, 1024),
+            sim::field<&P::cache_tiles>("4x4-pixel tiles in each tile cache of a partition")
+                .unit("tiles")
+                .range(1, 65534),
             sim::field<&P::queue>("Quads whose tiles are looked up ahead of execution").unit("quads").range(1, 4096),
-            sim::field<&P::reads_per_clk>("k-buffer reads of texture units accepted per cycle").unit("reads").range(1, 64),
-            sim::field<&P::read_latency>("From a texture unit's k-buffer read to its value, when the tile is in the cache").unit("cycles").range(1, 10000),
+            sim::field<&P::reads_per_clk>("k-buffer reads of texture units accepted per cycle")
+                .unit("reads")
+                .range(1, 64),
+            sim::field<&P::read_latency>(
+                "From a texture unit's k-buffer read to its value, when the tile is in the cache")
+                .unit("cycles")
+                .range(1, 10000),
             sim::field<&P::fast_clear>("Clears cost no memory traffic")};
     }
 };
 static_assert(sim::fully_described<RopParams>);
 
 struct RopStats {
-    sim::Counter   quads, fragments, depth_passed, depth_failed, stores, program_runs, program_cycles, insertions,
+    sim::Counter quads, fragments, depth_passed, depth_failed, stores, program_runs, program_cycles, insertions,
         interlock_stalls, kbuffer_reads, kbuffer_reads_from_tiles, clears, copies;
     sim::HighWater queue_max;
     TileCacheStats depth_tiles, colour_tiles, kbuffer_tiles;
@@ -73,7 +83,8 @@ struct RopStats {
             sim::field<&S::clears>("Bytes written by clears").unit("bytes"),
             sim::field<&S::copies>("Bytes read and written by copies").unit("bytes"),
             sim::field<&S::queue_max>("Most quads waiting for their tiles").unit("quads"),
-            sim::field<&S::depth_tiles>("Depth tile cache"), sim::field<&S::colour_tiles>("Colour tile cache"),
+            sim::field<&S::depth_tiles>("Depth tile cache"),
+            sim::field<&S::colour_tiles>("Colour tile cache"),
             sim::field<&S::kbuffer_tiles>("k-buffer tile cache")};
     }
 };
@@ -82,47 +93,47 @@ static_assert(sim::fully_described<RopStats>);
 /// What the fixed-function ROP reads and writes, in row order; each pixel is touched by the partition that owns it.
 struct FixedSurfaces {
     std::vector<DepthCode> depth;
-    std::vector<QuadId>    winner; ///< ~0 = cleared
+    std::vector<QuadId> winner;    ///< ~0 = cleared
     std::vector<glm::vec4> colour; ///< linear RGBA, as the colour format holds it; empty when no pass writes colour
 };
 
 /// What one draw did to the output stage.
 struct DrawOutput {
     std::uint64_t quads = 0, fragments = 0, hazards = 0;
-    sim::Cycle    first_cycle = ~sim::Cycle{0}, last_cycle = 0;
+    sim::Cycle first_cycle = ~sim::Cycle{0}, last_cycle = 0;
 };
 
 /// Surfaces and per-pixel books that all partitions of a machine share, each its own pixels.
 struct RopSurfaces {
-    FixedSurfaces* fixed   = nullptr;
+    FixedSurfaces* fixed = nullptr;
     KBufferMemory* kbuffer = nullptr;
-    StoreHistory*  history = nullptr;
-    QuadPayloads*  payloads = nullptr;
+    StoreHistory* history = nullptr;
+    QuadPayloads* payloads = nullptr;
 };
 
 /// What a partition is built for.
 struct RopShape {
-    std::uint32_t pipes  = 1; ///< texture units that may read the k-buffer
-    std::size_t   draws  = 0; ///< draws of the frame, for the counters per draw
-    bool          depth  = true; ///< has a depth tile cache
-    bool          colour = true; ///< has a colour tile cache
+    std::uint32_t pipes = 1; ///< texture units that may read the k-buffer
+    std::size_t draws = 0;   ///< draws of the frame, for the counters per draw
+    bool depth = true;       ///< has a depth tile cache
+    bool colour = true;      ///< has a colour tile cache
 };
 
 class Rop final : public sim::Component {
   public:
-    sim::In<QuadTask>                      quads_in{*this, "quads_in"};
-    sim::Out<MemoryRequest>                memory_out{*this, "memory_out"};
-    sim::In<MemoryResponse>                memory_in{*this, "memory_in"};
-    sim::Out<Commit>                       commits_out{*this, "commits_out"}; ///< linked when someone waits for stores
-    std::deque<sim::In<KBufferRead>>       reads_in;                          ///< one per pipe, when shaders read the k-buffer
-    std::deque<sim::Out<KBufferReadDone>>  reads_out;
+    sim::In<QuadTask> quads_in{*this, "quads_in"};
+    sim::Out<MemoryRequest> memory_out{*this, "memory_out"};
+    sim::In<MemoryResponse> memory_in{*this, "memory_in"};
+    sim::Out<Commit> commits_out{*this, "commits_out"}; ///< linked when someone waits for stores
+    std::deque<sim::In<KBufferRead>> reads_in;          ///< one per pipe, when shaders read the k-buffer
+    std::deque<sim::Out<KBufferReadDone>> reads_out;
     std::deque<sim::Out<LineInvalidation>> invalidations_out; ///< one per pipe, when texture caches are kept coherent
 
     Rop(sim::Context context, const RopParams& params, const PassContext& pass, const KBufferPlan& plan,
         const RopSurfaces& surfaces, const RopShape& shape);
 
-    RopStats                       stats() const;
-    const HazardLedger&            ledger() const { return ledger_; }
+    RopStats stats() const;
+    const HazardLedger& ledger() const { return ledger_; }
     const std::vector<DrawOutput>& draw_outputs() const { return draw_outputs_; }
 
     // Called between runs of the event core; the next run does the work.
@@ -133,88 +144,90 @@ class Rop final : public sim::Component {
     void stream(std::uint64_t read_bytes, std::uint64_t write_bytes);
 
   private:
-    static constexpr std::uint16_t no_entry      = TileCache::none;
-    static constexpr std::uint32_t stream_chunk  = 256;
+    static constexpr std::uint16_t no_entry = TileCache::none;
+    static constexpr std::uint32_t stream_chunk = 256;
     static constexpr std::uint32_t stream_window = 16; ///< chunk reads outstanding
 
     enum class Use : std::uint8_t { depth, colour, kbuffer };
     struct Queued {
-        QuadTask                     task;
+        QuadTask task;
         std::array<std::uint16_t, 3> entry{no_entry, no_entry, no_entry}; ///< by Use
     };
     struct ReadJob {
-        KBufferRead   read;
+        KBufferRead read;
         std::uint32_t outstanding = 0;
     };
     struct TileRead { ///< served from the tile cache
         KBufferRead read;
-        sim::Cycle  ready = 0;
+        sim::Cycle ready = 0;
     };
     struct PendingBlend { ///< a result inside a blender without interlock
         std::uint32_t block = 0, pixel = 0;
-        PixelVersion  version;
-        sim::Cycle    written = 0;
+        PixelVersion version;
+        sim::Cycle written = 0;
     };
 
     sim::Activity tick() override;
-    bool          take_memory();
-    bool          accept_reads();
-    bool          serve_tile_reads();
-    bool          admit();
-    bool          secure_tile(Use use, std::uint32_t tile, std::uint16_t& entry);
-    bool          execute(sim::Activity& waiting);
-    bool          stream_next();
-    bool          send_requests();
-    bool          send_answers();
-    bool          send_invalidations();
-    bool          write_back_next();
+    bool take_memory();
+    bool accept_reads();
+    bool serve_tile_reads();
+    bool admit();
+    std::uint16_t secure_tile(Use use, std::uint32_t tile);
+    bool execute(sim::Activity& waiting);
+    bool stream_next();
+    bool send_requests();
+    bool send_answers();
+    bool send_invalidations();
+    bool write_back_next();
 
-    TileCache&    cache(Use use);
+    TileCache& cache(Use use);
     std::uint32_t tile_bytes(Use use) const;
     std::uint64_t tile_address(Use use, std::uint32_t tile) const;
-    bool          fetches(Use use) const;
-    void          request(std::uint64_t address, std::uint32_t bytes, std::uint32_t tag, MemoryClient client, bool write,
-                          std::uint32_t draw);
-    void          clean(Use use, std::uint16_t entry);
-    void          publish(std::uint32_t tile);
-    void          sample(const KBufferRead& read, std::uint64_t targets);
+    bool fetches(Use use) const;
+    void request(std::uint64_t address, std::uint32_t bytes, std::uint32_t tag, MemoryClient client, bool write,
+                 std::uint32_t draw);
+    void clean(Use use, std::uint16_t entry);
+    void publish(std::uint32_t tile);
+    void sample(const KBufferRead& read, std::uint64_t targets);
     std::uint32_t run_depth_colour(const Queued& queued);
-    void          write_colour(QuadId quad, std::uint32_t pixel, std::size_t at);
+    void write_colour(QuadId quad, std::uint32_t pixel, std::size_t at);
     std::uint32_t run_store(const Queued& queued);
     std::uint32_t run_blend(const Queued& queued);
-    void          apply_pending_blends();
-    void          finish(const Queued& queued, bool hazardous);
+    void apply_pending_blends();
+    void finish(const Queued& queued, bool hazardous);
     std::uint32_t rops() const;
+    std::uint32_t cycles_for(std::uint32_t bytes) const; ///< over the ports of the partition's ROPs, at least 1
 
-    RopParams                            params_;
-    const PassContext*                   pass_;
-    const KBufferPlan*                   plan_;
-    RopSurfaces                          surfaces_;
-    std::vector<std::string>             port_names_;
-    RopStats                             stats_;
-    TileCache                            depth_tiles_, colour_tiles_, kbuffer_tiles_;
+    RopParams params_;
+    const PassContext* pass_;
+    const KBufferPlan* plan_;
+    RopSurfaces surfaces_;
+    std::vector<std::string> port_names_;
+    RopStats stats_;
+    TileCache depth_tiles_, colour_tiles_, kbuffer_tiles_;
     std::unique_ptr<ProgrammableBlender> blender_;
-    HazardLedger                         ledger_;
-    std::vector<DrawOutput>              draw_outputs_;
-    FixedQueue<Queued>                   queue_;
-    FixedQueue<MemoryRequest>            requests_;
-    FixedQueue<TileRead>                 tile_reads_;
-    FixedQueue<KBufferRead>              answers_;
-    FixedQueue<std::uint32_t>            invalidations_;
-    std::vector<ReadJob>                 jobs_;
-    std::vector<std::uint32_t>           free_jobs_;
-    std::vector<std::uint32_t>           unpublished_; ///< tiles evicted while nothing may become visible
-    std::vector<PendingBlend>            pending_blends_;
-    std::vector<float>                   pending_values_;
-    std::uint32_t                        draw_           = 0; ///< that memory traffic is booked to
-    std::uint32_t                        next_pipe_      = 0;
-    sim::Cycle                           unit_free_      = 0;
-    bool                                 interlocked_    = false; ///< the head of the queue has been counted as stalled
-    bool                                 writing_back_   = false;
-    bool                                 acknowledge_    = false; ///< the write-back was commanded in band
-    std::uint32_t                        write_back_at_  = 0;
-    std::uint64_t                        stream_reads_   = 0, stream_writes_ = 0, stream_address_ = 0;
-    std::uint32_t                        stream_outstanding_ = 0;
+    HazardLedger ledger_;
+    std::vector<DrawOutput> draw_outputs_;
+    FixedQueue<Queued> queue_;
+    FixedQueue<MemoryRequest> requests_;
+    FixedQueue<TileRead> tile_reads_;
+    FixedQueue<KBufferRead> answers_;
+    FixedQueue<std::uint32_t> invalidations_;
+    std::vector<ReadJob> jobs_;
+    std::vector<std::uint32_t> free_jobs_;
+    std::vector<std::uint32_t> unpublished_;   ///< tiles evicted while nothing may become visible
+    std::vector<std::uint8_t> is_unpublished_; ///< by tile
+    std::vector<PendingBlend> pending_blends_;
+    std::vector<float> pending_values_;
+    std::uint32_t draw_ = 0; ///< that memory traffic is booked to
+    std::uint32_t next_pipe_ = 0;
+    sim::Cycle unit_free_ = 0;
+    bool interlocked_ = false; ///< the head of the queue has been counted as stalled
+    bool writing_back_ = false;
+    bool acknowledge_ = false; ///< the write-back was commanded in band
+    std::uint32_t write_back_at_ = 0;
+    std::uint64_t stream_reads_ = 0, stream_writes_ = 0, stream_address_ = 0;
+    std::uint32_t stream_outstanding_ = 0;
 };
 
 } // namespace pipeline

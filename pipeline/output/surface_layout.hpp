@@ -1,7 +1,7 @@
 // How a surface is cut into the units that caches, ROPs and memory work on.
 //
-// A tile is 4x4 pixels and belongs to one ROP partition; a block is one aligned 2x2 quad. Blocks are numbered tile by tile
-// so that a tile is contiguous in memory.
+// A tile is 4x4 pixels and belongs to one ROP partition; a block is one aligned 2x2 quad. Blocks are numbered tile by
+// tile so that a tile is contiguous in memory.
 #pragma once
 
 #include <cstdint>
@@ -28,15 +28,12 @@ struct SurfaceLayout {
     static std::uint32_t tile_of_block(std::uint32_t block) { return block / 4; }
 
     /// Upper-left pixel of a block.
-    std::uint32_t block_x(std::uint32_t block) const {
-        return (block / 4 % tiles_x()) * tile_size + block % 2 * 2;
-    }
-    std::uint32_t block_y(std::uint32_t block) const {
-        return (block / 4 / tiles_x()) * tile_size + block / 2 % 2 * 2;
-    }
-    /// Neighbouring tiles lie in different partitions in both directions.
+    std::uint32_t block_x(std::uint32_t block) const { return (block / 4 % tiles_x()) * tile_size + block % 2 * 2; }
+    std::uint32_t block_y(std::uint32_t block) const { return (block / 4 / tiles_x()) * tile_size + block / 2 % 2 * 2; }
+    /// Neighbouring tiles lie in different partitions in both directions, if there is more than one.
     std::uint32_t partition_of_tile(std::uint32_t tile) const {
-        return (tile % tiles_x() + 2 * (tile / tiles_x())) % partitions;
+        const std::uint32_t row_step = partitions == 2 ? 1 : 2;
+        return (tile % tiles_x() + row_step * (tile / tiles_x())) % partitions;
     }
     std::uint32_t partition_of(std::uint32_t x, std::uint32_t y) const { return partition_of_tile(tile_of(x, y)); }
 };

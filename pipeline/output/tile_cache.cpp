@@ -18,7 +18,7 @@ void TileCache::allocate(std::uint16_t entry, std::uint32_t tile, bool pending) 
     Entry& target = entries_[entry];
     CHECK(target.users == 0 && !target.pending && !target.dirty);
     if (target.tile != no_tile) where_[target.tile] = none;
-    target       = {tile, 0, ++clock_, false, pending};
+    target = {tile, 0, ++clock_, false, pending};
     where_[tile] = entry;
 }
 

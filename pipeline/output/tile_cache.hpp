@@ -1,8 +1,8 @@
 // The tile cache of a ROP partition: which 4x4-pixel tiles of one surface are on chip.
 //
-// Modelled: fully associative, least recently used; tiles are pinned while a quad that needs them waits; dirty tiles are
-// written back when replaced or flushed. Tags only: the bytes live in the surface.
-// Source: specification 004, section 7 (rop_tile, rop_cache_tiles).
+// Modelled: fully associative, least recently used; tiles are pinned while a quad that needs them waits; dirty tiles
+// are written back when replaced or flushed. Tags only: the bytes live in the surface. Source: specification 004,
+// section 7 (rop_tile, rop_cache_tiles).
 #pragma once
 
 #include "sim/described.hpp"
@@ -35,13 +35,13 @@ class TileCache {
     TileCache(std::uint32_t tiles, std::uint32_t surface_tiles) : entries_(tiles), where_(surface_tiles, none) {}
 
     std::uint16_t find(std::uint32_t tile) const { return where_[tile]; }
-    bool          resident(std::uint32_t tile) const { return where_[tile] != none && !entries_[where_[tile]].pending; }
+    bool resident(std::uint32_t tile) const { return where_[tile] != none && !entries_[where_[tile]].pending; }
 
     /// The entry that allocate() would replace; none when all are pinned or pending.
     std::uint16_t victim() const;
-    bool          dirty(std::uint16_t entry) const { return entries_[entry].dirty; }
+    bool dirty(std::uint16_t entry) const { return entries_[entry].dirty; }
     std::uint32_t tile(std::uint16_t entry) const { return entries_[entry].tile; }
-    bool          pending(std::uint16_t entry) const { return entries_[entry].pending; }
+    bool pending(std::uint16_t entry) const { return entries_[entry].pending; }
     std::uint16_t size() const { return static_cast<std::uint16_t>(entries_.size()); }
 
     /// Puts `tile` into `entry`, whose old content must be clean or written back by the caller.
@@ -59,15 +59,15 @@ class TileCache {
   private:
     static constexpr std::uint32_t no_tile = ~std::uint32_t{0};
     struct Entry {
-        std::uint32_t tile    = no_tile;
-        std::uint32_t users   = 0;
-        std::uint64_t used    = 0;
-        bool          dirty   = false;
-        bool          pending = false;
+        std::uint32_t tile = no_tile;
+        std::uint32_t users = 0;
+        std::uint64_t used = 0;
+        bool dirty = false;
+        bool pending = false;
     };
-    std::vector<Entry>         entries_;
+    std::vector<Entry> entries_;
     std::vector<std::uint16_t> where_; ///< by tile
-    std::uint64_t              clock_ = 0;
+    std::uint64_t clock_ = 0;
 };
 
 } // namespace pipeline

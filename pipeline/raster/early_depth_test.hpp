@@ -15,7 +15,7 @@ namespace pipeline {
 
 struct EarlyDepthParams {
     std::uint32_t quads_per_clk = 4;
-    std::uint32_t latency       = 8;
+    std::uint32_t latency = 8;
 
     static constexpr auto fields() {
         return std::tuple{
@@ -40,22 +40,22 @@ static_assert(sim::fully_described<EarlyDepthStats>);
 
 class EarlyDepthTest final : public sim::Component {
   public:
-    sim::In<QuadTask>  quads_in{*this, "quads_in"};
+    sim::In<QuadTask> quads_in{*this, "quads_in"};
     sim::Out<QuadTask> quads_out{*this, "quads_out"};
 
     EarlyDepthTest(sim::Context context, const EarlyDepthParams& params, const PassContext& pass)
         : Component(std::move(context)), params_(params), pass_(&pass) {}
 
     const EarlyDepthParams& params() const { return params_; }
-    const EarlyDepthStats&  stats() const { return stats_; }
+    const EarlyDepthStats& stats() const { return stats_; }
 
   private:
     sim::Activity tick() override;
-    std::uint8_t  surviving(const QuadTask& task) const;
+    std::uint8_t surviving(const QuadTask& task) const;
 
-    EarlyDepthParams   params_;
+    EarlyDepthParams params_;
     const PassContext* pass_;
-    EarlyDepthStats    stats_;
+    EarlyDepthStats stats_;
 };
 
 } // namespace pipeline

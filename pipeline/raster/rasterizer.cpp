@@ -26,7 +26,7 @@ void Rasterizer::begin(const Triangle& triangle) {
 
 void Rasterizer::emit(QuadId id) {
     const Quad& quad = pass_->stream->quads[id];
-    QuadTask    task;
+    QuadTask task;
     task.quad = id;
     task.mask = quad.alive;
     quads_out.send(task);

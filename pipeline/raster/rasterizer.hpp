@@ -22,7 +22,9 @@ struct RasterizerParams {
 
     static constexpr auto fields() {
         return std::tuple{
-            sim::field<&RasterizerParams::quads_per_clk>("Quads emitted per cycle, of all tiles visited in it").unit("quads").range(1, 64),
+            sim::field<&RasterizerParams::quads_per_clk>("Quads emitted per cycle, of all tiles visited in it")
+                .unit("quads")
+                .range(1, 64),
             sim::field<&RasterizerParams::tiles_per_clk>("8x8 tiles visited per cycle").unit("tiles").range(1, 64)};
     }
 };
@@ -32,12 +34,12 @@ struct RasterizerStats {
     sim::Counter triangles, triangles_without_quads, tiles, quads, fragments;
 
     static constexpr auto fields() {
-        return std::tuple{
-            sim::field<&RasterizerStats::triangles>("Triangles walked").unit("triangles"),
-            sim::field<&RasterizerStats::triangles_without_quads>("Triangles that cover no pixel centre").unit("triangles"),
-            sim::field<&RasterizerStats::tiles>("8x8 tiles visited").unit("tiles"),
-            sim::field<&RasterizerStats::quads>("Quads emitted").unit("quads"),
-            sim::field<&RasterizerStats::fragments>("Covered pixels").unit("fragments")};
+        return std::tuple{sim::field<&RasterizerStats::triangles>("Triangles walked").unit("triangles"),
+                          sim::field<&RasterizerStats::triangles_without_quads>("Triangles that cover no pixel centre")
+                              .unit("triangles"),
+                          sim::field<&RasterizerStats::tiles>("8x8 tiles visited").unit("tiles"),
+                          sim::field<&RasterizerStats::quads>("Quads emitted").unit("quads"),
+                          sim::field<&RasterizerStats::fragments>("Covered pixels").unit("fragments")};
     }
 };
 static_assert(sim::fully_described<RasterizerStats>);
@@ -45,25 +47,25 @@ static_assert(sim::fully_described<RasterizerStats>);
 class Rasterizer final : public sim::Component {
   public:
     sim::In<TriangleTask> triangles_in{*this, "triangles_in"};
-    sim::Out<QuadTask>    quads_out{*this, "quads_out"};
+    sim::Out<QuadTask> quads_out{*this, "quads_out"};
 
     Rasterizer(sim::Context context, const RasterizerParams& params, const PassContext& pass)
         : Component(std::move(context)), params_(params), pass_(&pass) {}
 
     const RasterizerParams& params() const { return params_; }
-    const RasterizerStats&  stats() const { return stats_; }
+    const RasterizerStats& stats() const { return stats_; }
 
   private:
     sim::Activity tick() override;
-    void          begin(const Triangle& triangle);
-    void          emit(QuadId quad);
+    void begin(const Triangle& triangle);
+    void emit(QuadId quad);
 
-    RasterizerParams   params_;
+    RasterizerParams params_;
     const PassContext* pass_;
-    RasterizerStats    stats_;
-    QuadId             next_quad_   = 0;
-    QuadId             end_quad_    = 0;
-    std::uint32_t      empty_tiles_ = 0; ///< visited tiles of the present triangle that hold no quad, still to be paid
+    RasterizerStats stats_;
+    QuadId next_quad_ = 0;
+    QuadId end_quad_ = 0;
+    std::uint32_t empty_tiles_ = 0; ///< visited tiles of the present triangle that hold no quad, still to be paid
 };
 
 } // namespace pipeline

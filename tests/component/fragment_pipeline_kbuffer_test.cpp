@@ -25,9 +25,9 @@ struct OneTarget : tests::QuadPass {
     OneTarget() : QuadPass(64, 64, 1, 1, "z") {}
 };
 
-constexpr sim::Cycle issue = 2;      ///< of the shader and the program
+constexpr sim::Cycle issue = 2;                      ///< of the shader and the program
 constexpr sim::Cycle looked_up = 1 + 30 + issue - 1; ///< the L1 lookup of a quad that is received at cycle 1
-constexpr sim::Cycle unit = 4;       ///< texture unit time of one render target
+constexpr sim::Cycle unit = 4;                       ///< texture unit time of one render target
 constexpr sim::Cycle hit_latency = 40;
 
 TEST(FragmentPipelineKBuffer, MissIsServedByTheMemorySideAndSampledThere) {
@@ -181,9 +181,9 @@ TEST(FragmentPipelineKBuffer, CoherentCacheSeesAStoreFromTheNextCycleOn) {
     OneTarget pass;
     for (int i = 0; i < 2; ++i) pass.quad(0, 0);
     const auto version_read = [&](sim::Cycle store) {
-        PipeBench bench(pass, {.site = site(TextureCoherence::invalidate_on_write),
-                               .stores = {{store, 0}},
-                               .source = {.gap = 1000}});
+        PipeBench bench(
+            pass,
+            {.site = site(TextureCoherence::invalidate_on_write), .stores = {{store, 0}}, .source = {.gap = 1000}});
         bench.run();
         return std::pair(bench.read_version(1), bench.kbuffer->reads.size());
     };

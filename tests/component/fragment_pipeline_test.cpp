@@ -102,7 +102,8 @@ void textured(tests::QuadPass& pass, std::uint32_t count, Line&& line) {
     for (std::uint32_t i = 0; i < count; ++i) pass.stream.texture_lines.push_back(line(i));
 }
 
-// Received at 1, asked for in the same cycle, 200 cycles inside the memory, a cycle on each link; then filtered and shaded.
+// Received at 1, asked for in the same cycle, 200 cycles inside the memory, a cycle on each link; then filtered and
+// shaded.
 TEST(FragmentPipeline, TextureMissTakesTheWayToMemory) {
     tests::QuadPass pass;
     textured(pass, 1, [](std::uint32_t) { return 7U; });
@@ -163,8 +164,8 @@ TEST(FragmentPipeline, QuadsWithoutAFetchDoNotWaitForTheTextureUnit) {
     EXPECT_GT(bench.done(0), 200U);
 }
 
-// Many waiters of one line come back at once and reserve the texture unit for their next fetch far ahead; a quad that is
-// past its ALUs must not wait for that.
+// Many waiters of one line come back at once and reserve the texture unit for their next fetch far ahead; a quad that
+// is past its ALUs must not wait for that.
 TEST(FragmentPipeline, ReservedTextureUnitDelaysOnlyWhoReads) {
     tests::QuadPass pass;
     pipeline::PeeledLayer layer;

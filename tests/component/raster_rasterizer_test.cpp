@@ -125,8 +125,7 @@ TEST(Rasterizer, SameInAllModes) {
     }
     tests::expect_same_in_all_modes([&](std::uint64_t, sim::Mode mode, std::uint64_t shuffle) {
         const Bench bench(pass, {.quads_per_clk = 3, .tiles_per_clk = 2}, {.every = 3}, 4, mode, shuffle);
-        return std::tuple(bench.sink.cycles(), tests::quads_of(bench.sink.values()),
-                          bench.rasterizer.activity_times());
+        return std::tuple(bench.sink.cycles(), tests::quads_of(bench.sink.values()), bench.rasterizer.activity_times());
     });
 }
 

@@ -18,8 +18,8 @@ support::ReplayOptions blended(std::vector<std::string> knobs) {
 TEST(Blended, EveryModeAndFormatEqualsTheReferenceBitForBit) {
     for (const char* mode : {"replace", "over", "add", "least", "greatest"})
         for (const char* format : {"rgba8", "rgba16f", "rgba32f"}) {
-            const support::Replay replay("gen:discs?n=200",
-                                         blended({std::string("mode=") + mode, std::string("colour_format=") + format}));
+            const support::Replay replay(
+                "gen:discs?n=200", blended({std::string("mode=") + mode, std::string("colour_format=") + format}));
             const pipeline::RunResult result = replay.run("existing");
             EXPECT_EQ(result.wrong_pixels, 0U) << mode << ' ' << format;
             EXPECT_EQ(result.colour, replay.reference.colour) << mode << ' ' << format;
@@ -34,7 +34,8 @@ TEST(Blended, BlendingReadsTheColourTilesAndReplacingDoesNot) {
 }
 
 TEST(Blended, OneFragmentOverTheBackgroundIsTheClosedForm) {
-    const support::Replay replay("gen:quads?n=1", blended({"colour_format=rgba32f", "opacity=0.25", "background=[0.5,0.5,0.5]"}));
+    const support::Replay replay("gen:quads?n=1",
+                                 blended({"colour_format=rgba32f", "opacity=0.25", "background=[0.5,0.5,0.5]"}));
     const auto& colours = replay.streams[0].colours.at(0)[0];
     const pipeline::RunResult result = replay.run("existing");
     for (int channel = 0; channel < 3; ++channel)

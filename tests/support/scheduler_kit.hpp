@@ -15,9 +15,9 @@ namespace tests {
 struct BackEndOptions {
     std::uint32_t pipes = 1;
     std::optional<std::uint32_t> closed_pipe = {}; ///< takes nothing
-    bool commits = true;               ///< living quads are committed, as in passes that touch the k-buffer
-    sim::Cycle commit_after = 10;      ///< from the arrival of a living quad in its pipe
-    sim::Cycle acknowledge_after = 10; ///< from the arrival of a write-back command at the order's end
+    bool commits = true;                           ///< living quads are committed, as in passes that touch the k-buffer
+    sim::Cycle commit_after = 10;                  ///< from the arrival of a living quad in its pipe
+    sim::Cycle acknowledge_after = 10;             ///< from the arrival of a write-back command at the order's end
     std::uint32_t reorder_places = 1024;
     sim::Cycle order_from = 0;  ///< the order's end takes nothing before
     sim::Cycle order_every = 1; ///< and then one message every so many cycles; 1 = all that come
@@ -37,8 +37,8 @@ class MockBackEnd final : public sim::Component {
     sim::In<pipeline::QuadTask> order_in{*this, "order_in"};
     sim::Out<pipeline::Commit> commits_out{*this, "commits_out"}; ///< may stay unlinked
 
-    std::vector<Arrival> arrivals;         ///< quads, in the order of their arrival
-    std::vector<pipeline::QuadTask> order; ///< quads and commands
+    std::vector<Arrival> arrivals;          ///< quads, in the order of their arrival
+    std::vector<pipeline::QuadTask> order;  ///< quads and commands
     std::vector<std::size_t> invalidations; ///< by pipe
 
     MockBackEnd(sim::Context context, const BackEndOptions& options)

@@ -1,0 +1,383 @@
+// What must hold for every design, scene and seed.
+// Source: DESIGN laws of section 2 (hazards and pictures, conservation, activities, determinism).
+#include "tests/support/replay.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <numeric>
+#include <set>
+
+namespace {
+
+using pipeline::MachineOptions;
+using pipeline::RunResult;
+using support::counter;
+using support::Replay;
+using support::ReplayOptions;
+
+using Json = nlohmann::ordered_json;
+using Settings = std::vector<std::string>;
+
+struct Case {
+    std::string scene;
+    ReplayOptions options;
+    Replay replay;
+
+    Case(std::string spec, ReplayOptions knobs)
+        : scene(std::move(spec)), options(std::move(knobs)), replay(scene, options) {}
+};
+
+/// Small frames that differ in what they use: indices or none, one draw or many, layers or meshes, one entry or
+/// sixteen.
+const std::vector<Case>& cases() {
+    static const std::vector<Case> list = [] {
+        std::vector<Case> made;
+        made.emplace_back("gen:discs?n=60&overlap=8&width=32&height=32", ReplayOptions{32, 32});
+        made.emplace_back("gen:stack?n=12&x=1&y=1&w=29&h=29&order=random",
+                          ReplayOptions{32, 32, "transparency", "auto", {"k=2"}});
+        made.emplace_back("gen:random-quads?n=2000&area=1024",
+                          ReplayOptions{32, 32, "transparency", "auto", {"entry=z", "k=16"}});
+        made.emplace_back("gen:blob?triangles=3000", ReplayOptions{48, 48});
+        made.emplace_back("gen:grid-soup?boxes=60&boxes_per_draw=7",
+                          ReplayOptions{48, 48, "transparency", "auto", {"k=8"}});
+        made.emplace_back("gen:grass?blades=300", ReplayOptions{48, 48, "transparency", "auto", {"k=1"}});
+        made.emplace_back("gen:discs?n=60&overlap=8&width=32&height=32", ReplayOptions{32, 32, "opaque"});
+        return made;
+    }();
+    return list;
+}
+
+/// Every design as it is, and variants that use other parts of the machine.
+const std::vector<std::pair<std::string, Settings>>& variants() {
+    static const std::vector<std::pair<std::string, Settings>> list = [] {
+        std::vector<std::pair<std::string, Settings>> made;
+        for (const std::string& design : support::design_ids()) made.push_back({design, {}});
+        made.push_back({"existing", {"existing.visibility=rop_cache", "existing.tex_coherence=invalidate_on_write"}});
+        made.push_back({"existing", {"existing.visibility=never_until_flush", "existing.flush_triangles=16"}});
+        made.push_back(
+            {"existing", {"existing.atomic_reads=true", "existing.flush_draws=true", "existing.drain=false"}});
+        made.push_back({"scoreboard",
+                        {"scoreboard.granularity=tile8", "scoreboard.visibility=writeback", "scoreboard.entries=9"}});
+        made.push_back({"blender", {"blender.interlock=forward"}});
+        made.push_back({"blender", {"blender.interlock=none", "blender.latency=200"}});
+        return made;
+    }();
+    return list;
+}
+
+const Settings jitter{"memory.controller.jitter_cycles=300"};
+
+Settings join(Settings settings, const Settings& more) {
+    settings.insert(settings.end(), more.begin(), more.end());
+    return settings;
+}
+
+std::string describe(const Case& one, const std::string& design, const Settings& settings) {
+    return fmt::format("{} {} on {} {} {}", design, fmt::join(settings, " "), one.options.workload, one.scene,
+                       fmt::join(one.options.knobs, " "));
+}
+
+template <class Check>
+void for_every_run(const Settings& more, Check check) {
+    for (const Case& one : cases())
+        for (const auto& [design, settings] : variants()) {
+            SCOPED_TRACE(describe(one, design, settings));
+            check(one, design, join(settings, more));
+        }
+}
+
+bool same_picture(const Case& one, const RunResult& run) {
+    return run.kbuffer == one.replay.reference.kbuffer && run.colour == one.replay.reference.colour;
+}
+
+} // namespace
+
+TEST(Laws, NoHazardMeansTheReferencePictureForEverySeed) {
+    std::set<std::uint64_t> outcomes;
+    for (const Case& one : cases())
+        for (const std::string& design : support::design_ids())
+            for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+                SCOPED_TRACE(fmt::format("{}, seed {}", describe(one, design, {}), seed));
+                const RunResult run = one.replay.run(design, jitter, {.seed = seed});
+                const bool same = same_picture(one, run);
+                EXPECT_EQ(same, run.wrong_pixels == 0);
+                if (design == "existing") {
+                    EXPECT_TRUE(same || run.hazards.total() > 0);
+                    EXPECT_EQ(run.unexplained_pixels, 0U);
+                    if (&one == &cases()[0]) outcomes.insert(run.hazards.total());
+                } else {
+                    EXPECT_EQ(run.hazards.total(), 0U);
+                    EXPECT_TRUE(same);
+                }
+            }
+    EXPECT_GT(outcomes.size(), 4U); // seeds matter
+}
+
+TEST(Laws, EveryWrongPixelIsExplainedByARecordedHazard) {
+    for_every_run(jitter, [](const Case& one, const std::string& design, const Settings& settings) {
+        for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+            const RunResult run = one.replay.run(design, settings, {.seed = seed});
+            EXPECT_EQ(run.unexplained_pixels, 0U);
+            const auto& hazards = run.hazards;
+            EXPECT_EQ(hazards.total(), hazards.h1 + hazards.h2 + hazards.h3 + hazards.h4);
+            EXPECT_LE(hazards.pixels, hazards.total());
+            EXPECT_EQ(std::accumulate(run.hazard_distance.begin(), run.hazard_distance.end(), std::uint64_t{0}),
+                      hazards.total());
+            EXPECT_EQ(std::count(run.wrong_mask.begin(), run.wrong_mask.end(), 1),
+                      static_cast<std::ptrdiff_t>(run.wrong_pixels));
+            EXPECT_EQ(run.hazard_mask.empty(), hazards.total() == 0);
+            if (!run.hazard_mask.empty()) {
+                EXPECT_EQ(run.hazard_mask.size() -
+                              static_cast<std::size_t>(std::count(run.hazard_mask.begin(), run.hazard_mask.end(), 0)),
+                          hazards.pixels);
+            }
+            for (const pipeline::HazardPair& pair : run.pairs) {
+                EXPECT_LT(pair.aggressor, pair.victim);
+                const std::size_t pixel = std::size_t{pair.y} * one.options.width + pair.x;
+                EXPECT_NE(run.hazard_mask[pixel] >> static_cast<unsigned>(pair.kind) & 1U, 0U);
+            }
+        }
+    });
+}
+
+namespace {
+
+/// The draw passes of the frame as the design executed them, each with its stream.
+template <class Visit>
+void for_each_executed_pass(const Replay& replay, const RunResult& run, Visit visit) {
+    std::size_t next = 0;
+    for (const pipeline::Pass& pass : replay.frame.passes) {
+        if (pass.kind != pipeline::PassKind::draw) continue;
+        const pipeline::FragmentStream& stream = replay.streams[next++];
+        for (const pipeline::PassResult& executed : run.passes)
+            if (executed.name == pass.name || executed.name.starts_with(pass.name + " layer "))
+                visit(pass, stream, executed.counters);
+    }
+}
+
+/// Fragments in = retired + killed, from stage to stage.
+void expect_conserved(const pipeline::Pass& pass, const pipeline::FragmentStream& stream, const Json& counters) {
+    const auto count = [&](const char* path) { return counter(counters, path); };
+    EXPECT_EQ(count("raster/triangles"), stream.triangles.size());
+    EXPECT_EQ(count("raster/quads"), stream.quads.size());
+    EXPECT_EQ(count("raster/fragments"), stream.fragments);
+    std::uint64_t alive = stream.fragments - stream.fragments_discarded;
+    std::uint64_t quads = stream.quads.size();
+    if (count("early_depth/quads") != 0) {
+        EXPECT_EQ(count("early_depth/quads"), quads);
+        EXPECT_EQ(count("early_depth/fragments"), alive);
+        alive -= count("early_depth/fragments_rejected");
+        quads -= count("early_depth/quads_rejected");
+    }
+    EXPECT_EQ(count("scheduler/quads"), quads);
+    EXPECT_EQ(count("scheduler/fragments"), alive);
+    EXPECT_EQ(count("fragment/quads"), quads);
+    EXPECT_EQ(count("fragment/fragments") + count("fragment/peel_rejects"), alive);
+    EXPECT_EQ(count("reorder_buffer/retired") + count("reorder_buffer/dropped"), quads);
+    EXPECT_EQ(count("crossbar/quads"), count("reorder_buffer/retired"));
+    EXPECT_EQ(count("rop/quads"), count("reorder_buffer/retired"));
+    EXPECT_EQ(count("rop/fragments"), count("fragment/fragments"));
+    EXPECT_EQ(count("rop/depth_passed") + count("rop/depth_failed") + count("rop/stores") + count("rop/program_runs"),
+              count("rop/fragments"));
+    if (!pass.kbuffer) {
+        EXPECT_EQ(count("rop/stores") + count("rop/program_runs"), 0U);
+    }
+    for (const char* cache : {"depth_tiles", "colour_tiles", "kbuffer_tiles"}) {
+        const std::string at = std::string("rop/") + cache;
+        EXPECT_EQ(counter(counters, at + "/hits") + counter(counters, at + "/misses"),
+                  counter(counters, at + "/accesses"));
+    }
+    EXPECT_EQ(count("memory/reads") + count("memory/writes"), count("memory/requests"));
+    EXPECT_EQ(count("memory/row_hits") + count("memory/row_misses"), count("memory/requests"));
+}
+
+} // namespace
+
+TEST(Laws, FragmentsThatEnterAStageLeaveItOrAreKilledThere) {
+    for_every_run({}, [](const Case& one, const std::string& design, const Settings& settings) {
+        const RunResult run = one.replay.run(design, settings);
+        std::uint64_t fragments = 0;
+        std::size_t passes = 0;
+        for_each_executed_pass(one.replay, run, [&](const auto& pass, const auto& stream, const Json& counters) {
+            expect_conserved(pass, stream, counters);
+            fragments += counter(counters, "rop/fragments");
+            ++passes;
+        });
+        EXPECT_GE(passes, one.replay.streams.size());
+        EXPECT_EQ(run.fragments, fragments);
+        EXPECT_EQ(counter(run.stages, "rop/counters/fragments"), fragments);
+    });
+}
+
+TEST(Laws, FragmentsAreConservedThroughAlphaTestAndEarlyDepth) {
+    const std::string file = support::shared_scene("glass_vase_flowers/GlassVaseFlowers.gltf");
+    if (file.empty()) GTEST_SKIP() << "no further scenes here: set ROPSIM_SHARED_DIR";
+    const Replay replay(file, {96, 96, "transparency", "auto", {"transparent=materials"}});
+    ASSERT_TRUE(replay.frame.needs.early_depth);
+    ASSERT_TRUE(replay.frame.needs.alpha_test);
+    std::uint64_t rejected = 0, discarded = 0;
+    for (const std::string& design : support::design_ids()) {
+        SCOPED_TRACE(design);
+        const RunResult run = replay.run(design);
+        for_each_executed_pass(replay, run, [&](const auto& pass, const auto& stream, const Json& counters) {
+            expect_conserved(pass, stream, counters);
+            rejected += counter(counters, "early_depth/fragments_rejected");
+            discarded += stream.fragments_discarded;
+        });
+    }
+    EXPECT_GT(rejected, 0U);
+    EXPECT_GT(discarded, 0U);
+}
+
+TEST(Laws, PassesAndDrawsAddUpToTheRun) {
+    for_every_run({}, [](const Case& one, const std::string& design, const Settings& settings) {
+        const RunResult run = one.replay.run(design, settings);
+        std::uint64_t cycles = 0, bytes = 0, draw_bytes = 0, quads = 0, fragments = 0;
+        for (const pipeline::PassResult& pass : run.passes) {
+            EXPECT_EQ(pass.first_cycle, cycles); // back to back
+            cycles += pass.cycles;
+            for (const Json& of_client : pass.counters.at("memory").at("bytes"))
+                bytes += of_client.get<std::uint64_t>();
+        }
+        EXPECT_EQ(cycles, run.cycles);
+        EXPECT_EQ(bytes, counter(run.bytes, "dram/bytes"));
+        for (const pipeline::DrawResult& draw : run.draws) {
+            quads += counter(draw.counters, "quads");
+            fragments += counter(draw.counters, "fragments");
+            for (const auto& item : draw.counters.items())
+                if (item.key().starts_with("dram_")) draw_bytes += item.value().get<std::uint64_t>();
+            if (counter(draw.counters, "quads") != 0) {
+                EXPECT_LE(counter(draw.counters, "first_cycle"), counter(draw.counters, "last_cycle"));
+            }
+        }
+        EXPECT_EQ(quads, counter(run.stages, "rop/counters/quads"));
+        EXPECT_EQ(fragments, run.fragments);
+        EXPECT_EQ(draw_bytes, bytes);
+    });
+}
+
+TEST(Laws, HitsAndMissesAreAllAccesses) {
+    for_every_run({}, [](const Case& one, const std::string& design, const Settings& settings) {
+        const RunResult run = one.replay.run(design, settings);
+        EXPECT_FALSE(run.caches.empty());
+        for (const auto& cache : run.caches.items()) {
+            SCOPED_TRACE(cache.key());
+            EXPECT_EQ(counter(cache.value(), "hits") + counter(cache.value(), "misses"),
+                      counter(cache.value(), "accesses"));
+            EXPECT_GT(counter(cache.value(), "accesses"), 0U);
+        }
+        // Accesses are those of whoever asks.
+        if (run.caches.contains("texture_l1_kbuffer")) {
+            const std::uint64_t lines =
+                support::counter(run.stages, "fragment_pipeline/counters/kbuffer_reads") *
+                (std::find(settings.begin(), settings.end(), "existing.atomic_reads=true") != settings.end()
+                     ? 1
+                     : one.replay.frame.program->targets());
+            EXPECT_EQ(counter(run.caches, "texture_l1_kbuffer/accesses"), lines);
+        }
+        if (run.caches.contains("kbuffer_tiles")) {
+            EXPECT_EQ(counter(run.caches, "kbuffer_tiles/accesses"), counter(run.stages, "crossbar/counters/quads"));
+        }
+    });
+}
+
+TEST(Laws, ActivitiesOfEveryUnitSumToTheElapsedTime) {
+    for_every_run(jitter, [](const Case& one, const std::string& design, const Settings& settings) {
+        const RunResult run = one.replay.run(design, settings);
+        for (const auto& stage : run.stages.items()) {
+            SCOPED_TRACE(stage.key());
+            std::uint64_t sum = 0;
+            for (const auto& activity : stage.value().at("activity").items())
+                sum += activity.value().get<std::uint64_t>();
+            const std::uint64_t units = stage.key() == "memory_partition" ? 4
+                                        : stage.value().contains("units") ? counter(stage.value(), "units")
+                                                                          : 1;
+            EXPECT_EQ(sum, units * run.cycles);
+        }
+        for (const auto& stage : run.stalls.items()) {
+            double sum = 0;
+            for (const auto& activity : stage.value().items()) sum += activity.value().get<double>();
+            EXPECT_NEAR(sum, 1.0, 1e-9) << stage.key();
+        }
+    });
+}
+
+TEST(Laws, SameInputsGiveTheSameBytes) {
+    for (const Case& one : cases()) {
+        ReplayOptions one_thread = one.options, two_threads = one.options;
+        one_thread.threads = 1;
+        two_threads.threads = 2;
+        const Replay first(one.scene, one_thread), second(one.scene, two_threads);
+        EXPECT_TRUE(first.reference.kbuffer == second.reference.kbuffer);
+        EXPECT_TRUE(first.reference.colour == second.reference.colour);
+        EXPECT_TRUE(first.reference.picture == second.reference.picture);
+        for (const auto& [design, settings] : variants()) {
+            SCOPED_TRACE(describe(one, design, settings));
+            const RunResult run = one.replay.run(design, join(settings, jitter), {.seed = 7});
+            EXPECT_EQ(support::difference(run, one.replay.run(design, join(settings, jitter), {.seed = 7})), "");
+            EXPECT_EQ(support::difference(run, first.run(design, join(settings, jitter), {.seed = 7})), "");
+            EXPECT_EQ(support::difference(run, second.run(design, join(settings, jitter), {.seed = 7})), "");
+        }
+    }
+}
+
+TEST(Laws, ResultDoesNotDependOnTheOrderOfTicks) {
+    for_every_run(jitter, [](const Case& one, const std::string& design, const Settings& settings) {
+        const RunResult run = one.replay.run(design, settings, {.seed = 3});
+        EXPECT_EQ(support::difference(run, one.replay.run(design, settings, {.seed = 3, .mode = sim::Mode::shuffled})),
+                  "");
+    });
+}
+
+TEST(Laws, ResultDoesNotDependOnSleeping) {
+    for_every_run(jitter, [](const Case& one, const std::string& design, const Settings& settings) {
+        const RunResult run = one.replay.run(design, settings, {.seed = 3});
+        EXPECT_EQ(
+            support::difference(run, one.replay.run(design, settings, {.seed = 3, .mode = sim::Mode::never_sleep})),
+            "");
+    });
+}
+
+namespace {
+
+/// Sees everything and does nothing.
+class Watcher final : public sim::Observer {
+  public:
+    void activity(const sim::Component&, sim::Activity, sim::Time, sim::Time) override { ++seen; }
+    void message(const sim::ChannelBase&, sim::Time, sim::Time) override { ++seen; }
+    std::uint64_t seen = 0;
+};
+
+} // namespace
+
+TEST(Laws, WatchingChangesNothing) {
+    for (const std::string& design : support::design_ids()) {
+        SCOPED_TRACE(design);
+        Watcher watcher;
+        std::atomic<std::uint64_t> quads{0};
+        const RunResult run = cases()[0].replay.run(design);
+        EXPECT_EQ(
+            support::difference(run, cases()[0].replay.run(design, {}, {.quads_done = &quads, .observer = &watcher})),
+            "");
+        EXPECT_GT(watcher.seen, 0U);
+    }
+}
+
+TEST(Laws, ComparisonOfRunsSeesEveryDifference) {
+    const RunResult run = cases()[0].replay.run("existing");
+    ASSERT_FALSE(run.pairs.empty());
+    const auto changed = [&](auto change) {
+        RunResult other = run;
+        change(other);
+        return support::difference(run, other);
+    };
+    EXPECT_EQ(changed([](RunResult& r) { r.host_seconds += 1, ++r.host_ticks; }), "");
+    EXPECT_NE(changed([](RunResult& r) { ++r.cycles; }), "");
+    EXPECT_NE(changed([](RunResult& r) { r.kbuffer[5] += 1.0F; }), "");
+    EXPECT_NE(changed([](RunResult& r) { ++r.pairs.back().read; }), "");
+    EXPECT_NE(changed([](RunResult& r) { ++r.layers.back().missing; }), "");
+    EXPECT_NE(changed([](RunResult& r) { r.stages["rop"]["counters"]["quads"] = 0; }), "");
+    EXPECT_NE(changed([](RunResult& r) { r.passes.back().counters["rop"]["quads"] = 0; }), "");
+    EXPECT_NE(changed([](RunResult& r) { r.draws.back().counters["quads"] = 0; }), "");
+    EXPECT_NE(changed([](RunResult& r) { r.area["added_state_bits"] = 1; }), "");
+}

@@ -1,0 +1,171 @@
+// What must hold for the source tree: who may include whom, how long files are, which words stand where.
+#include "models/kbuffers/library.hpp"
+#include "tests/support/paths.hpp"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Each may include itself and what stands to its left.
+const std::array<std::string, 6> layers{"sim", "pipeline", "models", "traces", "reports", "cli"};
+
+struct File {
+    std::string name; ///< from the root of the tree
+    std::vector<std::string> lines;
+};
+
+std::vector<std::string> lines_of(const fs::path& path) {
+    std::ifstream stream(path);
+    std::vector<std::string> lines;
+    for (std::string line; std::getline(stream, line);) lines.push_back(line);
+    return lines;
+}
+
+bool is_source(const fs::path& path) { return path.extension() == ".cpp" || path.extension() == ".hpp"; }
+
+/// All files below a folder of the tree that `wanted` accepts.
+template <class Wanted>
+std::vector<File> files_below(const std::string& folder, Wanted wanted) {
+    const fs::path root = ropsim_test::source_dir();
+    std::vector<File> files;
+    if (!fs::exists(root / folder)) return files;
+    for (const auto& entry : fs::recursive_directory_iterator(root / folder))
+        if (entry.is_regular_file() && wanted(entry.path()))
+            files.push_back({fs::relative(entry.path(), root).generic_string(), lines_of(entry.path())});
+    std::sort(files.begin(), files.end(), [](const File& a, const File& b) { return a.name < b.name; });
+    return files;
+}
+
+std::vector<File> sources_below(const std::string& folder) { return files_below(folder, is_source); }
+
+/// Every text of the project: sources, scripts, documents, data.
+std::vector<File> all_texts() {
+    const std::set<std::string> extensions{".cpp",  ".hpp",  ".h",   ".md", ".txt", ".cmake", ".in",   ".toml",
+                                           ".json", ".html", ".css", ".js", ".sh",  ".py",    ".supp", ".csv"};
+    const auto wanted = [&](const fs::path& path) { return extensions.contains(path.extension().string()); };
+    std::vector<File> files;
+    for (const char* folder : {"sim", "pipeline", "models", "traces", "reports", "cli", "tests", "cmake", "docs"})
+        for (File& file : files_below(folder, wanted)) files.push_back(std::move(file));
+    const fs::path root = ropsim_test::source_dir();
+    for (const auto& entry : fs::directory_iterator(root))
+        if (entry.is_regular_file() && entry.path().filename() != ".git")
+            files.push_back({entry.path().filename().string(), lines_of(entry.path())});
+    return files;
+}
+
+std::size_t position_of(const std::string& layer) {
+    return static_cast<std::size_t>(std::find(layers.begin(), layers.end(), layer) - layers.begin());
+}
+
+} // namespace
+
+TEST(SourceTree, FoldersIncludeOnlyFoldersToTheirLeft) {
+    const std::regex include(R"(^\s*#\s*include\s*\"([^/\"]+)/[^\"]*\")");
+    std::size_t seen = 0;
+    for (std::size_t layer = 0; layer < layers.size(); ++layer)
+        for (const File& file : sources_below(layers[layer]))
+            for (const std::string& line : file.lines) {
+                std::smatch match;
+                if (!std::regex_search(line, match, include)) continue;
+                ++seen;
+                const std::size_t other = position_of(match[1]);
+                EXPECT_TRUE(other == layers.size() || other <= layer) << file.name << ": " << line;
+                EXPECT_NE(match[1], "tests") << file.name << ": " << line;
+            }
+    EXPECT_GT(seen, 200U);
+}
+
+TEST(SourceTree, EventCoreHasNoWordOfGraphics) {
+    const std::regex words(
+        R"(\b(pixels?|fragments?|quads?|triangles?|vertex|vertices|textures?|texels?|rasteri[sz]er?s?|)"
+        R"(shaders?|blend(ing|er)?|stencil|framebuffers?|rops?|gpus?|graphics|k-?buffers?|tiles?|opengl|)"
+        R"(rendering|polygons?|meshes)\b)",
+        std::regex::icase);
+    std::size_t lines = 0;
+    for (const File& file :
+         files_below("sim", [](const fs::path& path) { return is_source(path) || path.extension() == ".md"; }))
+        for (const std::string& line : file.lines) {
+            ++lines;
+            std::smatch match;
+            EXPECT_FALSE(std::regex_search(line, match, words)) << file.name << ": " << line;
+        }
+    EXPECT_GT(lines, 1000U);
+}
+
+TEST(SourceTree, FilesAreShort) {
+    // A header is a data sheet and a source a page of a book. Longer ones, with the reason why they stay in one piece.
+    constexpr std::size_t longest_header = 250, longest_source = 400;
+    const std::map<std::string, std::string> allowed{
+        {"pipeline/output/rop.cpp", "one state machine: queue, tile caches, reads and write-back share its state"},
+        {"tests/component/core_simulation_test.cpp", "the contract of one type, case by case"},
+    };
+    std::set<std::string> unused;
+    for (const auto& [name, reason] : allowed) {
+        EXPECT_FALSE(reason.empty());
+        unused.insert(name);
+    }
+    for (const char* folder : {"sim", "pipeline", "models", "traces", "reports", "cli", "tests"})
+        for (const File& file : sources_below(folder)) {
+            const bool header = file.name.ends_with(".hpp");
+            if (file.lines.size() <= (header ? longest_header : longest_source)) continue;
+            EXPECT_TRUE(allowed.contains(file.name)) << file.name << " has " << file.lines.size() << " lines";
+            unused.erase(file.name);
+        }
+    for (const std::string& name : unused) ADD_FAILURE() << name << " is short now: take it off the list";
+}
+
+TEST(SourceTree, EveryDesignIsNamedInATest) {
+    std::string tests;
+    for (const char* folder : {"tests/pipeline", "tests/laws", "tests/component", "tests/unit"})
+        for (const File& file : sources_below(folder)) {
+            if (file.name.ends_with("source_tree_test.cpp")) continue;
+            for (const std::string& line : file.lines) tests += line + "\n";
+        }
+    ASSERT_FALSE(models::designs().empty());
+    for (const models::DesignInfo& design : models::designs())
+        EXPECT_NE(tests.find(fmt::format("\"{}\"", design.id)), std::string::npos) << design.id;
+}
+
+TEST(SourceTree, EveryDesignIsAFileOfItsOwn) {
+    for (const models::DesignInfo& design : models::designs()) {
+        std::string name(design.id);
+        std::replace(name.begin(), name.end(), '-', '_');
+        EXPECT_TRUE(fs::exists(ropsim_test::source_dir() / "models/kbuffers" / (name + ".cpp"))) << name;
+        EXPECT_FALSE(design.summary.empty());
+        EXPECT_FALSE(design.parameters().empty()) << name;
+    }
+}
+
+TEST(SourceTree, TextSpeaksOfTheProjectOnly) {
+    // Put together here, so that this file does not hold them.
+    const std::string todo = std::string("TO") + "DO", fixme = std::string("FIX") + "ME";
+    const std::regex machine_paths(R"((^|[^\w.])/(work|root)(/|\b)(?!loads))");
+    const std::regex notes("\\b(" + todo + "|" + fixme + "|" + "XX" + "X)\\b");
+    std::size_t lines = 0;
+    for (const File& file : all_texts())
+        for (const std::string& line : file.lines) {
+            ++lines;
+            EXPECT_FALSE(std::regex_search(line, machine_paths) && !file.name.ends_with("source_tree_test.cpp"))
+                << file.name << ": " << line;
+            EXPECT_FALSE(std::regex_search(line, notes)) << file.name << ": " << line;
+        }
+    EXPECT_GT(lines, 10'000U);
+}
+
+TEST(SourceTree, FilesAreTextWithUnixLineEnds) {
+    for (const File& file : all_texts())
+        for (const std::string& line : file.lines)
+            EXPECT_TRUE(line.empty() || (line.back() != '\r' && line.back() != ' ')) << file.name << ": " << line;
+}

@@ -1,0 +1,222 @@
+// Frames and machines at the limits: nothing to draw, odd viewports, everything in one place, one of every unit.
+#include "tests/support/replay.hpp"
+#include "tests/support/screen_scene.hpp"
+
+#include <fmt/format.h>
+#include <fstream>
+#include <gtest/gtest.h>
+
+namespace {
+
+using pipeline::RunResult;
+using support::counter;
+using support::Replay;
+using support::screen_scene;
+
+using Settings = std::vector<std::string>;
+
+const std::vector<std::string> both_workloads{"transparency", "opaque"};
+
+/// Runs every design and expects the reference; `existing` must at least explain what is wrong.
+void expect_good_runs(const Replay& replay, const Settings& settings = {}) {
+    for (const std::string& design : support::design_ids()) {
+        SCOPED_TRACE(fmt::format("{} {}", design, fmt::join(settings, " ")));
+        const RunResult run = replay.run(design, settings);
+        EXPECT_EQ(run.unexplained_pixels, 0U);
+        if (design == "existing") continue;
+        EXPECT_EQ(run.hazards.total(), 0U);
+        EXPECT_EQ(run.wrong_pixels, 0U);
+    }
+}
+
+std::uint64_t peak_memory_bytes() {
+    std::ifstream status("/proc/self/status");
+    std::string word;
+    while (status >> word)
+        if (word == "VmHWM:") {
+            std::uint64_t kib = 0;
+            status >> kib;
+            return kib * 1024;
+        }
+    return 0;
+}
+
+} // namespace
+
+TEST(Extremes, NothingIsVisible) {
+    for (const std::string& workload : both_workloads) {
+        // One triangle beside the viewport, one in front of the near plane, one behind the far plane.
+        const traces::Scene scene = screen_scene({{{-50, 1, 0.5F}, {-50, 9, 0.5F}, {-40, 5, 0.5F}},
+                                                  {{1, 1, -0.5F}, {1, 9, -0.5F}, {9, 5, -0.5F}},
+                                                  {{1, 1, 1.5F}, {1, 9, 1.5F}, {9, 5, 1.5F}}});
+        const Replay replay(scene, {16, 16, workload});
+        EXPECT_TRUE(replay.streams[0].triangles.empty());
+        EXPECT_TRUE(replay.streams[0].quads.empty());
+        expect_good_runs(replay);
+        for (const std::string& design : support::design_ids()) {
+            const RunResult run = replay.run(design);
+            EXPECT_EQ(run.fragments, 0U);
+            EXPECT_EQ(counter(run.stages, "clip_cull/counters/primitives"),
+                      workload == "opaque" || design != "multipass" ? 3U : 12U);
+        }
+    }
+}
+
+TEST(Extremes, FrameWithoutAnyPrimitive) {
+    for (const std::string& workload : both_workloads) {
+        Replay replay("gen:stack?n=3", {16, 16, workload});
+        for (pipeline::Pass& pass : replay.frame.passes) pass.draws.clear();
+        replay.streams = pipeline::rasterize_frame(replay.frame);
+        replay.reference = pipeline::run_reference(replay.frame, replay.streams);
+        ASSERT_TRUE(replay.streams[0].primitives.empty());
+        expect_good_runs(replay);
+    }
+}
+
+TEST(Extremes, TrianglesTooSmallForAnyPixelCentre) {
+    std::vector<support::ScreenTriangle> triangles;
+    for (int i = 0; i < 100; ++i) {
+        const auto x = static_cast<float>(i % 10), y = static_cast<float>(i / 10);
+        triangles.push_back({{x + 0.6F, y + 0.6F, 0.5F}, {x + 0.6F, y + 0.9F, 0.5F}, {x + 0.9F, y + 0.6F, 0.5F}});
+    }
+    const Replay replay(screen_scene(triangles), {.width = 16, .height = 16});
+    EXPECT_EQ(replay.streams[0].triangles.size(), 100U);
+    EXPECT_TRUE(replay.streams[0].quads.empty());
+    expect_good_runs(replay);
+    EXPECT_EQ(counter(replay.run("blender").stages, "rasterizer/counters/triangles_without_quads"), 100U);
+}
+
+TEST(Extremes, OddViewports) {
+    for (const auto& [width, height] :
+         {std::pair(1U, 1U), {3U, 5U}, {5U, 3U}, {1U, 64U}, {64U, 1U}, {7U, 7U}, {17U, 33U}, {63U, 65U}}) {
+        SCOPED_TRACE(fmt::format("{}x{}", width, height));
+        for (const std::string& workload : both_workloads) {
+            for (const char* scene : {"gen:quads?n=9&order=random", "gen:blob?triangles=1000",
+                                      "gen:discs?n=30&overlap=9&width=3&height=3"}) {
+                if (std::string(scene).starts_with("gen:discs") && (width < 3 || height < 3)) continue;
+                const Replay replay(scene, {width, height, workload});
+                expect_good_runs(replay);
+                expect_good_runs(replay,
+                                 {"scoreboard.granularity=tile16", "scoreboard.entries=3", "memory.partitions=3"});
+            }
+        }
+        const Replay layers("gen:quads?n=9", {.width = width, .height = height});
+        EXPECT_EQ(layers.run("blender").fragments, std::uint64_t{9} * width * height);
+    }
+}
+
+TEST(Extremes, ManyCoincidentFragmentsOfEqualDepth) {
+    std::vector<support::ScreenTriangle> triangles(256, {{0, 0, 0.5F}, {0, 32, 0.5F}, {32, 0, 0.5F}});
+    for (const std::uint32_t k : {1U, 4U, 64U}) {
+        const Replay replay(screen_scene(triangles), {16, 16, "transparency", "auto", {fmt::format("k={}", k)}});
+        expect_good_runs(replay);
+    }
+    expect_good_runs(Replay(screen_scene(triangles), {16, 16, "opaque"}));
+}
+
+TEST(Extremes, SixtyFourEntries) {
+    for (const char* entry : {"entry=z", "entry=rgbz"}) {
+        const Replay replay("gen:discs?n=400&overlap=80&width=32&height=32&segments=8",
+                            {32, 32, "transparency", "auto", {"k=64", entry}});
+        SCOPED_TRACE(entry);
+        expect_good_runs(replay);
+        expect_good_runs(replay, {"existing.atomic_reads=true", "scoreboard.visibility=writeback"});
+    }
+}
+
+TEST(Extremes, OneHugeTriangle) {
+    for (const std::string& workload : both_workloads) {
+        const Replay replay(
+            screen_scene({{{-100'000, -100'000, 0.5F}, {-100'000, 300'000, 0.5F}, {300'000, -100'000, 0.5F}}}),
+            {256, 256, workload});
+        EXPECT_EQ(replay.streams[0].fragments, 65'536U);
+        expect_good_runs(replay);
+    }
+}
+
+TEST(Extremes, LargeViewportWithOneSmallTriangle) {
+    const Replay replay(screen_scene({{{1000, 1000, 0.5F}, {1000, 1010, 0.5F}, {1010, 1000, 0.5F}}}),
+                        {.width = 2048, .height = 2048});
+    for (const std::string& design : support::design_ids()) {
+        const RunResult run = replay.run(design);
+        EXPECT_EQ(run.wrong_pixels, 0U);
+        EXPECT_EQ(counter(support::pass_named(run, "geometry").counters, "raster/fragments"), 55U);
+    }
+    // The k-buffer itself has 256 MiB, of which run, reference and result hold one each, and two where memory differs
+    // from the tile cache's view.
+    EXPECT_LT(peak_memory_bytes(), std::uint64_t{2500} << 20U);
+}
+
+TEST(Extremes, SmallestMachine) {
+    const Settings smallest{"fragment.pipes=1",
+                            "fragment.quads_in_flight=1",
+                            "reorder_buffer.quads=1",
+                            "reorder_buffer.retire_per_clk=1",
+                            "memory.partitions=1",
+                            "rop.units=1",
+                            "rop.cache_tiles=1",
+                            "rop.queue=1",
+                            "crossbar.queue=1",
+                            "raster.quads_per_clk=1",
+                            "texture.l1_bytes=64",
+                            "texture.l1_ways=1",
+                            "memory.controller.queue=1",
+                            "memory.hub.reads_in_flight=64",
+                            "early_depth.quads_per_clk=1",
+                            "scoreboard.side_buffer=1",
+                            "scoreboard.lookups=1"};
+    for (const std::string& workload : both_workloads) {
+        expect_good_runs(Replay("gen:blob?triangles=1000", {32, 32, workload}), smallest);
+        expect_good_runs(Replay("gen:discs?n=40&overlap=6&width=32&height=32", {32, 32, workload}), smallest);
+    }
+}
+
+TEST(Extremes, EachQueueAtItsSmallest) {
+    const Replay replay("gen:discs?n=60&overlap=8&width=32&height=32", {.width = 32, .height = 32});
+    for (const char* setting :
+         {"fragment.pipes=1", "fragment.quads_in_flight=1", "reorder_buffer.quads=1", "reorder_buffer.retire_per_clk=1",
+          "memory.partitions=1", "rop.cache_tiles=1", "rop.queue=1", "crossbar.queue=1", "crossbar.bytes_per_clk=1",
+          "raster.quads_per_clk=1", "texture.l1_bytes=0", "texture.l1_bytes=64", "memory.controller.queue=1",
+          "fragment.registers=1", "rop.read_latency=1", "rop.bytes_per_clk=1"}) {
+        SCOPED_TRACE(setting);
+        expect_good_runs(replay, {setting});
+    }
+}
+
+TEST(Extremes, LargestMachine) {
+    const Replay replay("gen:discs?n=60&overlap=8&width=64&height=64", {.width = 64, .height = 64});
+    for (const Settings& settings :
+         {Settings{"fragment.pipes=64"}, Settings{"fragment.pipes=48", "fragment.quads_in_flight=4096"},
+          Settings{"memory.partitions=64"}, Settings{"rop.cache_tiles=65534"},
+          Settings{"rop.queue=4096", "crossbar.queue=4096"}, Settings{"rop.units=1024"},
+          Settings{"fragment.pipes=64", "memory.partitions=64", "raster.quads_per_clk=64", "raster.tiles_per_clk=64",
+                   "reorder_buffer.retire_per_clk=64"}}) {
+        SCOPED_TRACE(fmt::format("{}", fmt::join(settings, " ")));
+        expect_good_runs(replay, settings);
+    }
+}
+
+TEST(Extremes, FlushesOnTheSmallestMachineEnd) {
+    const Replay replay("gen:discs?n=20&overlap=6&width=32&height=32&segments=8", {.width = 32, .height = 32});
+    for (const char* drain : {"existing.drain=true", "existing.drain=false"}) {
+        for (const char* visibility : {"rop_cache", "writeback", "never_until_flush"}) {
+            const RunResult run = replay.run(
+                "existing", {"existing.flush_triangles=1", drain, std::string("existing.visibility=") + visibility,
+                             "fragment.pipes=1", "fragment.quads_in_flight=1", "reorder_buffer.quads=1",
+                             "rop.cache_tiles=1", "rop.queue=1", "crossbar.queue=1"});
+            EXPECT_EQ(run.unexplained_pixels, 0U);
+            if (std::string(drain).ends_with("true")) {
+                EXPECT_EQ(run.hazards.total(), 0U);
+            }
+        }
+    }
+}
+
+TEST(Extremes, ClocksThatDoNotDivideEachOther) {
+    const Replay replay("gen:discs?n=60&overlap=8&width=32&height=32", {.width = 32, .height = 32});
+    for (const char* clock : {"memory.clock_mhz=1", "memory.clock_mhz=333.333", "memory.clock_mhz=5000",
+                              "clock.core_mhz=1", "clock.core_mhz=99999"}) {
+        SCOPED_TRACE(clock);
+        expect_good_runs(replay, {clock});
+    }
+}

@@ -146,6 +146,7 @@ class Rop final : public sim::Component {
   private:
     static constexpr std::uint16_t no_entry = TileCache::none;
     static constexpr std::uint32_t stream_chunk = 256;
+    static constexpr std::uint32_t request_room = 72;  ///< one step adds at most this many: all targets of one read
     static constexpr std::uint32_t stream_window = 16; ///< chunk reads outstanding
 
     enum class Use : std::uint8_t { depth, colour, kbuffer };

@@ -108,7 +108,6 @@ TEST(SourceTree, FilesAreShort) {
     // A header is a data sheet and a source a page of a book. Longer ones, with the reason why they stay in one piece.
     constexpr std::size_t longest_header = 250, longest_source = 400;
     const std::map<std::string, std::string> allowed{
-        {"pipeline/output/rop.cpp", "one state machine: queue, tile caches, reads and write-back share its state"},
         {"tests/component/core_simulation_test.cpp", "the contract of one type, case by case"},
     };
     std::set<std::string> unused;

@@ -1,0 +1,170 @@
+// How a fragment pipe reads the k-buffer: lookups, merged misses, invalidation, and the program on what came back.
+#include "pipeline/fragment/fragment_pipeline.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <utility>
+
+namespace pipeline {
+
+void FragmentPipeline::run_program(const QuadTask& task) {
+    const FragmentStream& stream = *pass_->stream;
+    float entry[4];
+    for (std::uint32_t pixel = 0; pixel < 4; ++pixel) {
+        if ((task.mask >> pixel & 1) == 0) continue;
+        const float* rgba = stream.colours.empty() ? nullptr : &stream.colours[task.quad][pixel].x;
+        pass_->program->make_entry(rgba, stream.depths[task.quad][pixel], entry);
+        pass_->program->insert(payloads_->values(task.slot, pixel), entry);
+    }
+}
+
+bool FragmentPipeline::take_hits() {
+    bool progress = false;
+    for (; !hits_.empty() && hits_.front().ready <= cycle(); progress = true) {
+        after_values(hits_.front().thread);
+        hits_.pop();
+    }
+    return progress;
+}
+
+// L1 lookup of every render target of the quad's block: hits are sampled now, pending lines joined, the rest asked for.
+void FragmentPipeline::lookup_targets(std::uint16_t index) {
+    Thread& thread = threads_[index];
+    const QuadTask& task = thread.task;
+    const Quad& quad = pass_->stream->quads[task.quad];
+    const std::uint32_t parts = program_targets_ / line_targets_;
+    const std::uint64_t part_mask = line_targets_ == program_targets_ ? all_targets() : 1;
+    thread.block = pass_->layout.block_of(quad.x, quad.y);
+    thread.generation = l1_.generation();
+    thread.own = all_targets();
+    texture_free_ = std::max(texture_free_, cycle()) + texture_.cycles_per_rgba32f * program_targets_;
+    stats_.texture_cycles += texture_.cycles_per_rgba32f * program_targets_;
+    ++stats_.kbuffer_reads;
+    if (!uses_l1()) {
+        stats_.l1.kbuffer_misses += parts;
+        return;
+    }
+    std::uint64_t pending = 0;
+    for (std::uint16_t other = block_chain_[thread.block].first; other != nobody; other = threads_[other].next)
+        if (threads_[other].generation == thread.generation) pending |= threads_[other].own;
+    for (std::uint32_t part = 0; part < parts; ++part) {
+        const std::uint64_t targets = part_mask << part;
+        const std::uint32_t line = l1_.find_kbuffer(thread.block, part);
+        if (line == TextureCache::none) {
+            const bool join = (pending & targets) != 0;
+            if (join) thread.merged |= targets;
+            ++(join ? stats_.l1.kbuffer_merged : stats_.l1.kbuffer_misses);
+            continue;
+        }
+        ++stats_.l1.kbuffer_hits;
+        thread.own &= ~targets;
+        for (std::uint32_t pixel = 0; pixel < 4; ++pixel)
+            for (std::uint32_t n = 0; n < line_targets_; ++n)
+                payloads_->sample(task.slot, pixel, part * line_targets_ + n, l1_.data(line, pixel, n),
+                                  l1_.version(line, pixel), cycle());
+    }
+    thread.own &= ~thread.merged;
+}
+
+bool FragmentPipeline::send_read(std::uint16_t index) {
+    Thread& thread = threads_[index];
+    const Quad& quad = pass_->stream->quads[thread.task.quad];
+    auto& port = reads_out[pass_->layout.partition_of(quad.x, quad.y)];
+    if (!port.ready()) return false;
+    port.send({thread.block, thread.task.slot, thread.own, pass_->draw_of(thread.task.quad), pipe_, index});
+    return true;
+}
+
+bool FragmentPipeline::read_kbuffer_of_next() {
+    bool progress = false;
+    if (!read_in_hand_ && !shading_.empty() && shading_.front().ready <= cycle()) {
+        const std::uint16_t index = shading_.front().thread;
+        const bool reads = threads_[index].task.slot != no_slot;
+        if (reads && texture_free_ > cycle()) return false;
+        shading_.pop();
+        progress = true;
+        if (!reads) {
+            after_values(index);
+            return true;
+        }
+        lookup_targets(index);
+        Thread& thread = threads_[index];
+        if ((thread.own | thread.merged) == 0) {
+            hits_.push({index, texture_free_ + texture_.hit_latency});
+            return true;
+        }
+        append(block_chain_[thread.block], index);
+        if (thread.own != 0) read_in_hand_ = index;
+    }
+    if (read_in_hand_ && send_read(*read_in_hand_)) {
+        read_in_hand_.reset();
+        progress = true;
+    }
+    return progress;
+}
+
+void FragmentPipeline::fill_l1(const Thread& thread, std::uint64_t targets) {
+    if (!uses_l1() || thread.generation != l1_.generation()) return;
+    for (std::uint32_t part = 0; part < program_targets_ / line_targets_; ++part) {
+        const std::uint32_t first = part * line_targets_;
+        if ((targets >> first & 1) == 0) continue;
+        const std::uint32_t line = l1_.put_kbuffer(thread.block, part);
+        if (line == TextureCache::none) continue;
+        for (std::uint32_t pixel = 0; pixel < 4; ++pixel) {
+            const float* from = payloads_->values(thread.task.slot, pixel) + first * 4;
+            std::copy(from, from + line_targets_ * 4, l1_.data(line, pixel, 0));
+            l1_.version(line, pixel) = payloads_->version(thread.task.slot, pixel, first);
+        }
+    }
+}
+
+void FragmentPipeline::give_to_waiting(const Thread& from, std::uint64_t targets) {
+    const std::uint32_t slot = from.task.slot;
+    for (std::uint16_t other = block_chain_[from.block].first; other != nobody; other = threads_[other].next) {
+        Thread& thread = threads_[other];
+        const std::uint64_t shared = thread.generation == from.generation ? thread.merged & targets : 0;
+        for (std::uint64_t left = shared; left != 0; left &= left - 1) {
+            const auto target = static_cast<std::uint32_t>(std::countr_zero(left));
+            for (std::uint32_t pixel = 0; pixel < 4; ++pixel)
+                payloads_->sample(thread.task.slot, pixel, target, payloads_->values(slot, pixel) + target * 4,
+                                  payloads_->version(slot, pixel, target), (*payloads_)[slot].last_read);
+        }
+        thread.merged &= ~shared;
+    }
+}
+
+// Lets the threads go that have all they asked for. Only now, because the program overwrites the values it works on.
+void FragmentPipeline::finish_complete(std::uint32_t block) {
+    Chain& chain = block_chain_[block];
+    for (std::uint16_t thread = std::exchange(chain, {}).first; thread != nobody;) {
+        const std::uint16_t next = threads_[thread].next;
+        if ((threads_[thread].own | threads_[thread].merged) == 0)
+            after_values(thread);
+        else
+            append(chain, thread);
+        thread = next;
+    }
+}
+
+void FragmentPipeline::kbuffer_arrived(std::uint16_t index) {
+    Thread& thread = threads_[index];
+    const std::uint64_t targets = std::exchange(thread.own, 0);
+    fill_l1(thread, targets);
+    give_to_waiting(thread, targets);
+    finish_complete(thread.block);
+}
+
+// Values on their way were perhaps sampled before the store: later quads must not join them, nor find them in L1.
+void FragmentPipeline::invalidate(std::uint32_t block) {
+    l1_.drop_kbuffer_block(block, program_targets_ / line_targets_);
+    ++stats_.l1.invalidations;
+    bool orphaned = false;
+    for (std::uint16_t thread = block_chain_[block].first; thread != nobody; thread = threads_[thread].next)
+        if (threads_[thread].generation == l1_.generation()) {
+            threads_[thread].generation = orphans_;
+            orphaned = true;
+        }
+    if (orphaned) --orphans_;
+}
+
+} // namespace pipeline

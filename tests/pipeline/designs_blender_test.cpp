@@ -35,15 +35,15 @@ const std::vector<std::string> four_rgbz{"k=4", "entry=rgbz"}, sixteen_z{"k=16",
 TEST(BlenderDesign, K12_StallingPixelComesBackAfterTheLatency) {
     for (const int latency : {16, 24, 100}) {
         const Settings settings{"blender.interlock=stall", fmt::format("blender.latency={}", latency)};
-        EXPECT_NEAR(same_pixel_interval(settings, four_rgbz), latency, 0.01);
-        EXPECT_NEAR(same_pixel_interval(settings, sixteen_z), latency, 0.01);
+        EXPECT_NEAR(same_pixel_interval(settings, four_rgbz), latency, 0.05);
+        EXPECT_NEAR(same_pixel_interval(settings, sixteen_z), latency, 0.05);
     }
 }
 
 TEST(BlenderDesign, K12_ForwardingPixelComesBackAfterTheProgramsCost) {
     const Settings settings{"blender.interlock=forward"};
-    EXPECT_NEAR(same_pixel_interval(settings, four_rgbz), 9, 0.01);  // 36 operations, 4 lanes
-    EXPECT_NEAR(same_pixel_interval(settings, sixteen_z), 12, 0.01); // 48 operations, 4 lanes
+    EXPECT_NEAR(same_pixel_interval(settings, four_rgbz), 9, 0.05);  // 36 operations, 4 lanes
+    EXPECT_NEAR(same_pixel_interval(settings, sixteen_z), 12, 0.05); // 48 operations, 4 lanes
 }
 
 TEST(BlenderDesign, K12_CostIsThatOfTheLanesOrOfThePort) {
@@ -53,11 +53,11 @@ TEST(BlenderDesign, K12_CostIsThatOfTheLanesOrOfThePort) {
         same_pixel_interval({"blender.interlock=forward", "blender.lanes=36", "blender.port_bytes=64"}, four_rgbz), 2,
         0.01);
     // One ROP per partition works on the four fragments of a quad one after the other.
-    EXPECT_NEAR(same_pixel_interval({"blender.interlock=forward", "rop.units=4"}, four_rgbz), 36, 0.01);
+    EXPECT_NEAR(same_pixel_interval({"blender.interlock=forward", "rop.units=4"}, four_rgbz), 36, 0.05);
 }
 
 TEST(BlenderDesign, K12_LatencyBelowTheCostDoesNotSpeedItUp) {
-    EXPECT_NEAR(same_pixel_interval({"blender.interlock=stall", "blender.latency=1"}, four_rgbz), 9, 0.01);
+    EXPECT_NEAR(same_pixel_interval({"blender.interlock=stall", "blender.latency=1"}, four_rgbz), 9, 0.05);
 }
 
 TEST(BlenderDesign, StallsAreCountedOncePerQuad) {

@@ -265,7 +265,7 @@ TEST(Existing, K7_FlushWithoutInvalidationLeavesStaleLines) {
 }
 
 TEST(Existing, K7_FlushWithoutDrainLeavesStoresInFlight) {
-    EXPECT_GT(flushed_layers({"existing.drain=false"}).hazards.h1, 0U);
+    EXPECT_GT(flushed_layers({"existing.drain=false", "fragment.pipes=24"}).hazards.h1, 0U);
 }
 
 TEST(Existing, FlushAtDrawBoundariesSeparatesDraws) {

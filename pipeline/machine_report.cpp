@@ -67,6 +67,9 @@ void Machine::list_units(RunResult& result) const {
     };
     const Units& units = *units_;
     const bool shader_site = units.payloads.has_value();
+    const auto because = [this](const char* reason) {
+        return std::string(frame_->needs.kbuffer ? reason : "no pass runs a modify program");
+    };
     for (const char* unit : {"command processor", "vertex reuse", "vertex fetch", "vertex shader", "primitive assembly",
                              "clip and cull", "triangle setup", "rasterizer", "fragment scheduler",
                              "fragment pipelines", "reorder buffer", "crossbar", "ROP partitions", "memory partitions"})
@@ -75,12 +78,13 @@ void Machine::list_units(RunResult& result) const {
     part(units.early_depth.has_value(), "early depth test", "no pass tests a depth surface that it does not write");
     part(textures_linked_, "texture path to memory", "no texture and no peeled layer is read");
     part(plan_.scheduling.guard != nullptr, "dispatch guard and side buffer",
-         "the design lets every quad into the pipes");
-    part(shader_site, "k-buffer read path of the shaders", "the design does not read the k-buffer in the shader");
+         because("the design lets every quad into the pipes"));
+    part(shader_site, "k-buffer read path of the shaders",
+         because("the design does not read the k-buffer in the shader"));
     part(plan_.site == UpdateSite::blender && units.kbuffer, "programmable blender",
-         "the design does not modify pixels in the ROP");
+         because("the design does not modify pixels in the ROP"));
     part(units.kbuffer.has_value(), "k-buffer surface and its tile cache",
-         "the design keeps its layers in depth and colour surfaces");
+         because("the design keeps its layers in depth and colour surfaces"));
     part(uses_depth(), "depth tile cache", "no pass tests or writes depth");
     part(uses_colour(), "colour tile cache", "no pass writes colour");
     for (const LeftOut& item : frame_->left_out)

@@ -146,8 +146,9 @@ class Rop final : public sim::Component {
   private:
     static constexpr std::uint16_t no_entry = TileCache::none;
     static constexpr std::uint32_t stream_chunk = 256;
-    static constexpr std::uint32_t request_room = 72;  ///< one step adds at most this many: all targets of one read
-    static constexpr std::uint32_t stream_window = 16; ///< chunk reads outstanding
+    static constexpr std::uint32_t largest_request = 4096; ///< bytes; see MemoryRequest
+    static constexpr std::uint32_t request_room = 72;      ///< one step adds at most this many: all targets of one read
+    static constexpr std::uint32_t stream_window = 16;     ///< chunk reads outstanding
 
     enum class Use : std::uint8_t { depth, colour, kbuffer };
     struct Queued {
@@ -187,6 +188,7 @@ class Rop final : public sim::Component {
     bool fetches(Use use) const;
     void request(std::uint64_t address, std::uint32_t bytes, std::uint32_t tag, MemoryClient client, bool write,
                  std::uint32_t draw);
+    void request_tile(Use use, std::uint32_t tile, std::uint32_t tag, MemoryClient client, bool write);
     void clean(Use use, std::uint16_t entry);
     void publish(std::uint32_t tile);
     void sample(const KBufferRead& read, std::uint64_t targets);

@@ -13,6 +13,7 @@ namespace {
 constexpr std::uint32_t tag_tile = 1U << 28U; ///< | use << 16 | entry
 constexpr std::uint32_t tag_read = 2U << 28U; ///< | job << 7 | target (64 = all targets)
 constexpr std::uint32_t tag_stream = 3U << 28U;
+constexpr std::uint32_t tag_part = 4U << 28U; ///< all but the last request of a tile that takes several
 constexpr std::uint32_t tag_kind = 15U << 28U;
 constexpr std::uint32_t all_target = 64;
 
@@ -49,7 +50,7 @@ void Rop::request(std::uint64_t address, std::uint32_t bytes, std::uint32_t tag,
 
 void Rop::publish(std::uint32_t tile) {
     if (surfaces_.kbuffer == nullptr) return;
-    if (plan_->shader.visibility == Visibility::never_until_flush && !writing_back_) {
+    if (plan_->shader.visibility == Visibility::never_until_flush && !writing_back_ && !plan_->shader.write_through) {
         if (!std::exchange(is_unpublished_[tile], 1)) unpublished_.push_back(tile);
         return;
     }
@@ -59,10 +60,19 @@ void Rop::publish(std::uint32_t tile) {
         for (std::uint32_t block = tile * 4; block < tile * 4 + 4; ++block) invalidations_.push(block);
 }
 
+// A whole tile, in requests of the size that memory takes; the last one carries the tag.
+void Rop::request_tile(Use use, std::uint32_t tile, std::uint32_t tag, MemoryClient client, bool write) {
+    std::uint64_t address = tile_address(use, tile);
+    std::uint32_t left = tile_bytes(use);
+    for (; left > largest_request; left -= largest_request, address += largest_request)
+        request(address, largest_request, tag_part, client, write, draw_);
+    request(address, left, tag, client, write, draw_);
+}
+
 void Rop::clean(Use use, std::uint16_t entry) {
     TileCache& tiles = cache(use);
     const std::uint32_t tile = tiles.tile(entry);
-    request(tile_address(use, tile), tile_bytes(use), 0, MemoryClient::tile_write, true, draw_);
+    request_tile(use, tile, 0, MemoryClient::tile_write, true);
     tiles.mark_clean(entry);
     ++tiles.stats.writebacks;
     if (use == Use::kbuffer) publish(tile);
@@ -77,7 +87,7 @@ bool Rop::take_memory() {
             cache(static_cast<Use>(tag >> 16U & 3U)).filled(static_cast<std::uint16_t>(tag & 0xFFFFU));
         else if ((tag & tag_kind) == tag_stream)
             --stream_outstanding_;
-        else {
+        else if ((tag & tag_kind) == tag_read) {
             const std::uint32_t target = tag & 127U;
             ReadJob& job = jobs_[(tag & ~tag_kind) >> 7U];
             sample(job.read, target == all_target ? job.read.targets : std::uint64_t{1} << target);
@@ -172,8 +182,8 @@ std::uint16_t Rop::secure_tile(Use use, std::uint32_t tile) {
         if (tiles.dirty(entry)) clean(use, entry);
         tiles.allocate(entry, tile, fetches(use));
         if (fetches(use))
-            request(tile_address(use, tile), tile_bytes(use), tag_tile | static_cast<std::uint32_t>(use) << 16U | entry,
-                    MemoryClient::tile_read, false, draw_);
+            request_tile(use, tile, tag_tile | static_cast<std::uint32_t>(use) << 16U | entry, MemoryClient::tile_read,
+                         false);
     }
     tiles.pin(entry);
     return entry;

@@ -38,7 +38,7 @@ sim::Activity ReorderBuffer::tick() {
             ++stats_.dropped;
             continue;
         }
-        ++stats_.retired;
+        if (!command) ++stats_.retired;
         quads_out.send(task);
     }
     return progress ? sim::Activity::busy : sim::Activity::starved;

@@ -159,6 +159,23 @@ TEST(LeaveOut, WhatNobodyReadsIsNotFetched) {
     EXPECT_TRUE(depths.streams[0].texture_lines.empty());
 }
 
+namespace {
+
+/// Counters without those that say when or how long something happened: a unit more on the way shifts time.
+nlohmann::ordered_json without_time(const nlohmann::ordered_json& counters) {
+    nlohmann::ordered_json kept = nlohmann::ordered_json::object();
+    for (const auto& item : counters.items()) {
+        const auto about = [&item](const char* word) { return item.key().find(word) != std::string::npos; };
+        if (about("max") || about("queued") || about("in_flight") || about("waits") || about("waiting") ||
+            about("residence") || about("interval") || about("stalls") || about("row_") || about("conflicts"))
+            continue;
+        kept[item.key()] = item.value().is_object() ? without_time(item.value()) : item.value();
+    }
+    return kept;
+}
+
+} // namespace
+
 TEST(LeaveOut, BuildingEverythingChangesNeitherPictureNorCounts) {
     for (const Expectation& expected : expectations()) {
         const Replay replay(expected.scene, expected.options);
@@ -173,7 +190,9 @@ TEST(LeaveOut, BuildingEverythingChangesNeitherPictureNorCounts) {
             EXPECT_EQ(full.fragments, lean.fragments);
             for (const auto& stage : lean.stages.items()) {
                 ASSERT_TRUE(full.stages.contains(stage.key()));
-                EXPECT_EQ(full.stages[stage.key()].at("counters"), stage.value().at("counters")) << stage.key();
+                EXPECT_EQ(without_time(full.stages[stage.key()].at("counters")),
+                          without_time(stage.value().at("counters")))
+                    << stage.key();
             }
         }
     }

@@ -111,7 +111,7 @@ void Config::insert_toml(std::string_view text, const std::string& name, const s
     for (const auto& [key, value] : table) Inserter{*this, name, raw}.insert(value, std::string(key.str()));
 }
 
-Config Config::from_toml_text(std::string_view text, std::string name) {
+Config Config::from_toml_text(std::string_view text, const std::string& name) {
     Config config;
     try {
         config.insert_toml(text, name, nullptr);
@@ -129,6 +129,20 @@ Config Config::from_toml_file(const std::filesystem::path& path) {
     const std::string text{std::istreambuf_iterator<char>(file), {}};
     if (file.bad()) throw InputError(fmt::format("{}: cannot be read", path.string()));
     return from_toml_text(text, path.string());
+}
+
+void Config::complete_from(const Config& base) {
+    leaves_.insert(base.leaves_.begin(), base.leaves_.end());
+    empty_tables_.insert(base.empty_tables_.begin(), base.empty_tables_.end());
+}
+
+std::string Config::take_text(const std::string& path) {
+    const auto found = leaves_.find(path);
+    if (found == leaves_.end()) return {};
+    if (!found->second.value.is_string()) detail::expected({found->second.place, path}, "text", found->second.value);
+    std::string text = found->second.value.get<std::string>();
+    leaves_.erase(found);
+    return text;
 }
 
 void Config::set(std::string_view assignment) {

@@ -27,10 +27,17 @@ class Config {
   public:
     Config() = default;
     static Config from_toml_file(const std::filesystem::path& path);
-    static Config from_toml_text(std::string_view text, std::string name);
+    static Config from_toml_text(std::string_view text, const std::string& name);
 
     /// "cache.lines=64", as from the command line; later ones win. Text needs no quotes: "cache.policy=lru".
     void set(std::string_view assignment);
+
+    /// Takes every value of `base` that is not configured here, with its place and origin.
+    void complete_from(const Config& base);
+
+    /// The text at `path`, which then counts as read; "" when nothing is configured there. Throws InputError when it is
+    /// no text.
+    std::string take_text(const std::string& path);
 
     /// Overwrites those fields of `object` that are configured below the dotted path `section` ("" is the root).
     template <Described S>

@@ -48,7 +48,10 @@ void unknown_key(const JsonPlace& where, const std::string& key, const std::vect
     throw InputError(fmt::format("{}: unknown key '{}'{}", where.place, path, did_you_mean(path, paths)));
 }
 
-std::string with_range(std::string type, const std::string& range) { return range.empty() ? type : type + " " + range; }
+std::string with_range(std::string type, const std::string& range) {
+    if (!range.empty()) type += " " + range;
+    return type;
+}
 
 // Only bins that hold something are written: {"start": count}.
 Json histogram_to_json(const Histogram& histogram) {

@@ -15,6 +15,9 @@ constexpr const char* general_help = R"(Examples:
   ropsim compare scene.glb --out report        four designs; then open report/report.html
   ropsim compare gen:blob --k 8 --entry z      a scene made by rule
   ropsim run scene.glb --design blender        every counter of one design
+  ropsim geometry scene.glb --gpu g70          what limits the geometry feed, and what helps
+  ropsim validate geometry                     the model beside published measurements
+  ropsim study batching                        one question, a table and a plot
   ropsim describe designs                      what can be chosen, and what it means)";
 
 constexpr const char* compare_help = R"(Examples:
@@ -28,6 +31,26 @@ constexpr const char* run_help = R"(Examples:
   ropsim run scene.glb --design scoreboard --set scoreboard.side_buffer=128
   ropsim run scene.glb --design scoreboard --timeline --out report
   ropsim run "gen:stack?n=64" --design blender --size 64x64 --json)";
+
+constexpr const char* geometry_help = R"(Examples:
+  ropsim geometry scene.glb --gpu g70
+  ropsim geometry scene.glb --gpu r420 --prepare reorder --prepare 'batch?vertices=4096'
+  ropsim geometry scene.glb --prepare recommended --export prepared.glb
+  ropsim geometry gen:grass --gpu nv43 --submission client_arrays --json)";
+
+constexpr const char* validate_help = R"(Examples:
+  ropsim validate geometry
+  ropsim validate geometry --gpus g70,r420 --leave-one-out --out validation)";
+
+constexpr const char* calibrate_help = R"(Examples:
+  ropsim calibrate geometry                      what the measurements say, beside what the files say
+  ropsim calibrate geometry --gpus g70 --write models/gpus)";
+
+constexpr const char* study_help = R"(Examples:
+  ropsim study                                   the studies there are
+  ropsim study batching --out batching
+  ropsim study batching --gpus g70 --fidelity estimate
+  ropsim study my_study.toml)";
 
 constexpr const char* describe_help = R"(Examples:
   ropsim describe                      an overview
@@ -70,6 +93,50 @@ void add_output_options(CLI::App& command, OutputOptions& options) {
     command.add_flag("--no-images", options.no_images, "Write no pictures (OpenImageIO is not loaded)");
 }
 
+void add_geometry(CLI::App& command, GeometryCommand& options) {
+    command
+        .add_option("scene", options.scene,
+                    "glTF file (.glb, .gltf), FILE#N for its scene number N, or gen:NAME?key=value&key=value")
+        ->required()
+        ->type_name("SCENE");
+    command.add_option("--gpu", options.gpu, "Name of a GPU or a .toml file (default neutral)")->type_name("GPU");
+    command
+        .add_option(
+            "--prepare", options.prepare,
+            "Preparation of the meshes, NAME?key=value&key=value; may be repeated (default: all that are usual, "
+            "each alone)")
+        ->type_name("NAME")
+        ->allow_extra_args(false)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    command
+        .add_option("--submission", options.submission,
+                    "Where vertices come from: buffers, client_arrays, immediate, display_list (default buffers)")
+        ->type_name("WAY");
+    command.add_option("--reads", options.reads, "Attributes the vertex shader reads: all or position (default all)")
+        ->type_name("WHICH");
+    command.add_option("--fidelity", options.fidelity, "estimate or detailed (default detailed)")->type_name("NAME");
+    command.add_option("--seed", options.seed, "Seed of everything random in the hardware (default 1)")->type_name("N");
+    command.add_option("--set", options.settings, "Overrides a number of the GPU; may be repeated")
+        ->type_name("PATH=VALUE")
+        ->allow_extra_args(false)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    command.add_option("--export", options.export_to, "Write the prepared scene to this .glb file; needs --prepare")
+        ->type_name("FILE");
+    command.add_option("--out", options.directory, "Folder for geometry.json and tables")->type_name("DIR");
+    command.add_flag("--json", options.json, "Print one JSON document on standard output, and nothing else");
+    command.footer(geometry_help);
+}
+
+void add_measure(CLI::App& command, MeasureCommand& options, const char* footer) {
+    command.add_option("--gpus", options.gpus, "GPUs, separated by commas (default: all that were measured)")
+        ->type_name("NAMES");
+    command.add_option("--fidelity", options.fidelity, "estimate or detailed (default detailed)")->type_name("NAME");
+    command.add_option("--threads", options.threads, "Threads (default: all cores); results do not depend on it")
+        ->type_name("N");
+    command.add_flag("--json", options.json, "Print one JSON document on standard output, and nothing else");
+    command.footer(footer);
+}
+
 struct Parser {
     Parser() {
         app.description("ropsim: a cycle-approximate simulator of a GPU's graphics pipeline and of k-buffer hardware.");
@@ -99,10 +166,35 @@ struct Parser {
             ->needs("--out");
         command->footer(run_help);
 
+        add_geometry(*app.add_subcommand("geometry", "What limits the geometry feed of a scene, and what helps"),
+                     geometry);
+
+        command = app.add_subcommand("validate", "The model beside published measurements");
+        command->add_option("target", validate.target, "What to validate: geometry")->required()->type_name("WHAT");
+        command->add_flag("--leave-one-out", validate.leave_one_out,
+                          "Also how predictions move when other rows determine the calibrated numbers");
+        command->add_option("--out", validate.directory, "Folder for validation.json, tables and a page")
+            ->type_name("DIR");
+        add_measure(*command, validate, validate_help);
+
+        command = app.add_subcommand("calibrate", "Fit numbers of GPU files to published measurements");
+        command->add_option("target", calibrate.target, "What to calibrate: geometry")->required()->type_name("WHAT");
+        command->add_option("--write", calibrate.directory, "Folder of GPU files to write the numbers into")
+            ->type_name("DIR");
+        add_measure(*command, calibrate, calibrate_help);
+
+        command = app.add_subcommand("study", "One question: a sweep, a table and a plot");
+        command->add_option("study", study.target, "Name of a study or a .toml file; none: list them")
+            ->type_name("STUDY");
+        command->add_option("--out", study.directory, "Folder for the table and a page with the plot")
+            ->type_name("DIR");
+        add_measure(*command, study, study_help);
+
         command = app.add_subcommand("describe", "Say what can be chosen and what the numbers mean");
         command
-            ->add_option("topic", describe.topic,
-                         "gpus, designs, programs, workloads, generators, params, stats, or a name")
+            ->add_option(
+                "topic", describe.topic,
+                "gpus, designs, programs, workloads, generators, preparations, studies, params, stats, or a name")
             ->type_name("TOPIC");
         command->add_flag("--json", describe.json, "Print one JSON document");
         command->add_flag("--names", describe.names, "Print names only, one a line");
@@ -114,6 +206,10 @@ struct Parser {
     CLI::App app;
     CompareCommand compare;
     RunCommand run;
+    GeometryCommand geometry;
+    ValidateCommand validate;
+    CalibrateCommand calibrate;
+    StudyCommand study;
     DescribeCommand describe;
     bool version = false;
 };
@@ -185,6 +281,10 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
         return ShowText{fmt::format("ropsim {} ({})\n", reports::version_text(), reports::build_text())};
     if (app.got_subcommand("compare")) return parser.compare;
     if (app.got_subcommand("run")) return parser.run;
+    if (app.got_subcommand("geometry")) return parser.geometry;
+    if (app.got_subcommand("validate")) return parser.validate;
+    if (app.got_subcommand("calibrate")) return parser.calibrate;
+    if (app.got_subcommand("study")) return parser.study;
     if (app.got_subcommand("describe")) return parser.describe;
     throw UsageError(
         fmt::format("expected a subcommand: {}; see ropsim --help", fmt::join(subcommand_names(app), ", ")));

@@ -7,6 +7,10 @@ namespace cli {
 
 void compare(const CompareCommand& command);
 void run(const RunCommand& command);
+void geometry(const GeometryCommand& command);
+void validate(const ValidateCommand& command);
+void calibrate(const CalibrateCommand& command);
+void study(const StudyCommand& command);
 void describe(const DescribeCommand& command);
 
 } // namespace cli

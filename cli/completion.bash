@@ -30,7 +30,7 @@ _ropsim() {
     local frame="--gpu --workload --k --entry --size --camera --seed --threads --set --out --json --no-images --help"
     COMPREPLY=()
     if ((COMP_CWORD == 1)); then
-        _ropsim_words "compare run describe --help --version"
+        _ropsim_words "compare run geometry validate calibrate study describe --help --version"
         return
     fi
     case $before in
@@ -42,12 +42,25 @@ _ropsim() {
         --set) _ropsim_words "$(_ropsim_names params | sed 's/$/=/')"; compopt -o nospace; return ;;
         --size) _ropsim_words "256x256 512x512 1024x1024 1920x1080"; return ;;
         --camera) _ropsim_words "auto 0"; return ;;
-        --out) mapfile -t COMPREPLY < <(compgen -d -- "$word"); compopt -o filenames; return ;;
+        --gpus) _ropsim_list "$(_ropsim_names gpus)"; return ;;
+        --prepare) _ropsim_words "$(_ropsim_names preparations)"; return ;;
+        --submission) _ropsim_words "buffers client_arrays immediate display_list"; return ;;
+        --reads) _ropsim_words "all position"; return ;;
+        --fidelity) _ropsim_words "estimate detailed"; return ;;
+        --export) _ropsim_files glb; return ;;
+        --out | --write) mapfile -t COMPREPLY < <(compgen -d -- "$word"); compopt -o filenames; return ;;
         --k | --seed | --threads) return ;;
     esac
+    local measure="--gpus --fidelity --threads --json --help"
     case $command in
         compare) [[ $word == -* ]] && _ropsim_words "--designs $frame" || _ropsim_files glb gltf ;;
         run) [[ $word == -* ]] && _ropsim_words "--design $frame" || _ropsim_files glb gltf ;;
+        geometry)
+            [[ $word == -* ]] && _ropsim_words "--gpu --prepare --submission --reads --fidelity --seed --set --export --out --json --help" ||
+                _ropsim_files glb gltf ;;
+        validate) [[ $word == -* ]] && _ropsim_words "--leave-one-out --out $measure" || _ropsim_words geometry ;;
+        calibrate) [[ $word == -* ]] && _ropsim_words "--write $measure" || _ropsim_words geometry ;;
+        study) [[ $word == -* ]] && _ropsim_words "--out $measure" || _ropsim_words "$(_ropsim_names studies)" ;;
         describe)
             if [[ $word == -* ]]; then
                 _ropsim_words "--names --json --help"

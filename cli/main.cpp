@@ -15,6 +15,10 @@ namespace {
 struct Dispatch {
     void operator()(const cli::CompareCommand& command) const { cli::compare(command); }
     void operator()(const cli::RunCommand& command) const { cli::run(command); }
+    void operator()(const cli::GeometryCommand& command) const { cli::geometry(command); }
+    void operator()(const cli::ValidateCommand& command) const { cli::validate(command); }
+    void operator()(const cli::CalibrateCommand& command) const { cli::calibrate(command); }
+    void operator()(const cli::StudyCommand& command) const { cli::study(command); }
     void operator()(const cli::DescribeCommand& command) const { cli::describe(command); }
     void operator()(const cli::ShowText& show) const { cli::print(show.text); }
 };

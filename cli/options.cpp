@@ -1,7 +1,9 @@
 #include "cli/options.hpp"
 
 #include "models/kbuffers/library.hpp"
+#include "pipeline/geometry/host.hpp"
 #include "sim/check.hpp"
+#include "sim/suggest.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -42,20 +44,39 @@ unsigned parse_threads(const std::string& text) {
     return *number;
 }
 
-// "all" stands for every design.
-std::vector<std::string> parse_designs(std::string_view text) {
+std::uint64_t parse_seed(const std::string& text) {
+    const auto seed = parse<std::uint64_t>(text);
+    if (!seed) throw sim::InputError(fmt::format("--seed: expected a whole number from 0 to 2^64 - 1, got '{}'", text));
+    return *seed;
+}
+
+std::vector<std::string> split(std::string_view text, std::string_view option) {
     std::vector<std::string> names;
-    if (text == "all") {
-        for (const models::DesignInfo& design : models::designs()) names.emplace_back(design.id);
-        return names;
-    }
     for (std::size_t begin = 0; begin <= text.size();) {
         const std::size_t end = std::min(text.find(',', begin), text.size());
         names.emplace_back(text.substr(begin, end - begin));
         if (names.back().empty())
-            throw sim::InputError(fmt::format("--designs: expected names separated by commas, got '{}'", text));
+            throw sim::InputError(fmt::format("{}: expected names separated by commas, got '{}'", option, text));
         begin = end + 1;
     }
+    return names;
+}
+
+template <class E>
+E parse_choice(std::string_view option, const std::string& text) {
+    const auto& names = sim::EnumNames<E>::names;
+    const auto found = std::find(names.begin(), names.end(), text);
+    if (found == names.end())
+        throw sim::InputError(fmt::format("{}: expected one of {}; got '{}'{}", option, fmt::join(names, ", "), text,
+                                          sim::did_you_mean(text, {names.begin(), names.end()})));
+    return static_cast<E>(found - names.begin());
+}
+
+// "all" stands for every design.
+std::vector<std::string> parse_designs(std::string_view text) {
+    if (text != "all") return split(text, "--designs");
+    std::vector<std::string> names;
+    for (const models::DesignInfo& design : models::designs()) names.emplace_back(design.id);
     return names;
 }
 
@@ -77,13 +98,31 @@ reports::ComparisonRequest request_of(const FrameOptions& options, const std::st
             request.workload_settings.push_back(setting.substr(workload.size()));
         else
             request.gpu_settings.push_back(setting);
-    const auto seed = parse<std::uint64_t>(options.seed);
-    if (!seed)
-        throw sim::InputError(
-            fmt::format("--seed: expected a whole number from 0 to 2^64 - 1, got '{}'", options.seed));
-    request.seed = *seed;
+    request.seed = parse_seed(options.seed);
     if (!options.threads.empty()) request.threads = parse_threads(options.threads);
     return request;
+}
+
+reports::GeometryRequest request_of(const GeometryCommand& command) {
+    reports::GeometryRequest request;
+    request.experiment.scene = command.scene;
+    request.experiment.prepare = command.prepare;
+    request.experiment.submission = parse_choice<pipeline::Submission>("--submission", command.submission);
+    if (command.reads != "all" && command.reads != "position")
+        throw sim::InputError(fmt::format("--reads: expected all or position, got '{}'", command.reads));
+    request.experiment.reads_all = command.reads == "all";
+    request.gpu = command.gpu;
+    request.gpu_settings = command.settings;
+    request.seed = parse_seed(command.seed);
+    return request;
+}
+
+reports::Fidelity fidelity_of(const std::string& text) { return parse_choice<reports::Fidelity>("--fidelity", text); }
+
+unsigned threads_of(const std::string& text) { return text.empty() ? reports::core_count() : parse_threads(text); }
+
+std::vector<std::string> list_of(const std::string& text) {
+    return text.empty() ? std::vector<std::string>{} : split(text, "--gpus");
 }
 
 } // namespace cli

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "reports/comparison.hpp"
+#include "reports/geometry/advice.hpp"
 
 #include <optional>
 #include <string>
@@ -49,14 +50,51 @@ struct DescribeCommand {
     bool names = false; ///< nothing but the names, one a line
 };
 
+struct GeometryCommand {
+    std::string scene;
+    std::string gpu = "neutral";
+    std::vector<std::string> prepare;
+    std::string submission = "buffers";
+    std::string reads = "all";
+    std::string fidelity = "detailed";
+    std::string seed = "1";
+    std::vector<std::string> settings; ///< of --set
+    std::string export_to;             ///< a .glb file; empty: none
+    std::string directory;             ///< of --out
+    bool json = false;
+};
+
+/// validate, calibrate and study: what to do it with, and on which GPUs.
+struct MeasureCommand {
+    std::string target;
+    std::string gpus; ///< separated by commas; empty: all
+    std::string fidelity = "detailed";
+    std::string threads;
+    std::string directory; ///< of --out, or of --write
+    bool leave_one_out = false;
+    bool json = false;
+};
+struct ValidateCommand : MeasureCommand {};
+struct CalibrateCommand : MeasureCommand {};
+struct StudyCommand : MeasureCommand {};
+
 /// A text asked for with --help or --version.
 struct ShowText {
     std::string text;
 };
 
-using Command = std::variant<CompareCommand, RunCommand, DescribeCommand, ShowText>;
+using Command = std::variant<CompareCommand, RunCommand, GeometryCommand, ValidateCommand, CalibrateCommand,
+                             StudyCommand, DescribeCommand, ShowText>;
 
 /// The request that the options stand for. Throws sim::InputError when a number or size is none.
 reports::ComparisonRequest request_of(const FrameOptions& options, const std::string& designs);
+
+/// The same for geometry feed.
+reports::GeometryRequest request_of(const GeometryCommand& command);
+
+/// "estimate" or "detailed"; a number of threads, "" for all cores; a list separated by commas. Throw sim::InputError.
+reports::Fidelity fidelity_of(const std::string& text);
+unsigned threads_of(const std::string& text);
+std::vector<std::string> list_of(const std::string& text);
 
 } // namespace cli

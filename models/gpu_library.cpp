@@ -24,7 +24,9 @@ std::vector<std::string> gpu_names() {
     return {names.begin(), names.end()};
 }
 
-sim::Config load_gpu(std::string_view name_or_path) {
+namespace {
+
+sim::Config load_one(std::string_view name_or_path) {
     const bool is_path = name_or_path.find('/') != std::string_view::npos || name_or_path.ends_with(".toml");
     if (is_path) return sim::Config::from_toml_file(name_or_path);
     const std::vector<std::string> names = gpu_names();
@@ -32,6 +34,26 @@ sim::Config load_gpu(std::string_view name_or_path) {
         throw sim::InputError(fmt::format("unknown GPU '{}'{}; expected a file (.toml) or one of: {}", name_or_path,
                                           sim::did_you_mean(name_or_path, names), fmt::join(names, ", ")));
     return sim::Config::from_toml_file(*ropsim_build::find_data(fmt::format("models/gpus/{}.toml", name_or_path)));
+}
+
+} // namespace
+
+std::string base_of(std::string_view name_or_path) { return load_one(name_or_path).take_text("base"); }
+
+sim::Config load_gpu(std::string_view name_or_path) {
+    constexpr std::size_t longest_chain = 8;
+    sim::Config config = load_one(name_or_path);
+    std::vector<std::string> bases;
+    for (std::string base = config.take_text("base"); !base.empty();) {
+        if (bases.size() == longest_chain)
+            throw sim::InputError(fmt::format("{}: base: expected a GPU that ends in one without a base, got {}",
+                                              name_or_path, fmt::join(bases, " -> ")));
+        bases.push_back(base);
+        sim::Config next = load_one(base);
+        base = next.take_text("base");
+        config.complete_from(next);
+    }
+    return config;
 }
 
 } // namespace models

@@ -25,8 +25,8 @@ const VertexAttribute* Geometry::find(Semantic semantic) const {
 }
 
 std::uint32_t Geometry::triangle_count() const {
-    if (topology == Topology::triangles) return index_count / 3;
-    return index_count < 3 ? 0 : index_count - 2;
+    if (primitive_restart) return runs.empty() ? 0 : runs.back().first_triangle;
+    return triangles_of(topology, index_count);
 }
 
 void Resources::place() {

@@ -4,6 +4,8 @@
 // guarantees that every index, offset and length is in range (validate() checks it).
 #pragma once
 
+#include "sim/field.hpp"
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -13,13 +15,59 @@
 
 namespace pipeline {
 
-enum class ComponentType : std::uint8_t { f32, f16, s8, u8, s16, u16, u32 };
-constexpr std::uint32_t bytes_of(ComponentType type) {
+/// Of vertex attributes. The last two are packed: x, y and z of 10 bits and w of 2, x in the low bits of 4 bytes
+/// (GL_INT_2_10_10_10_REV and its unsigned twin).
+enum class ComponentType : std::uint8_t { f32, f16, s8, u8, s16, u16, u32, s10_10_10_2, u10_10_10_2 };
+inline constexpr ComponentType last_component_type = ComponentType::u10_10_10_2;
+constexpr bool is_packed(ComponentType type) { return type >= ComponentType::s10_10_10_2; }
+
+/// Bytes of one element; packed types have 4 components.
+constexpr std::uint32_t element_bytes(ComponentType type, std::uint32_t components) {
     constexpr std::array<std::uint32_t, 7> sizes{4, 2, 1, 1, 2, 2, 4};
-    return sizes[static_cast<std::size_t>(type)];
+    return is_packed(type) ? 4 : sizes[static_cast<std::size_t>(type)] * components;
 }
 
-enum class Semantic : std::uint8_t { position, normal, colour, texcoord0, texcoord1 };
+/// What an attribute is to the vertex shader (specification 004, section 2.1).
+enum class Semantic : std::uint8_t {
+    position,
+    normal,
+    colour,
+    secondary_colour,
+    texcoord0,
+    texcoord1,
+    texcoord2,
+    texcoord3,
+    texcoord4,
+    texcoord5,
+    texcoord6,
+    texcoord7,
+    generic
+};
+inline constexpr std::uint32_t semantics = 13;
+inline constexpr std::uint32_t texcoord_sets = 8;
+/// Texture coordinates of set 0 to 7.
+constexpr Semantic texcoord(std::uint32_t set) {
+    return static_cast<Semantic>(static_cast<std::uint32_t>(Semantic::texcoord0) + set);
+}
+/// The bit of a semantic in a mask of attributes.
+constexpr std::uint32_t mask_of(Semantic semantic) { return 1U << static_cast<std::uint32_t>(semantic); }
+
+/// Which kind of hardware input an attribute takes; the costs of formats differ by it.
+enum class Slot : std::uint8_t { position, normal, colour, texcoord, generic };
+constexpr Slot slot_of(Semantic semantic) {
+    if (semantic >= Semantic::texcoord0 && semantic <= Semantic::texcoord7) return Slot::texcoord;
+    switch (semantic) {
+    case Semantic::position:
+        return Slot::position;
+    case Semantic::normal:
+        return Slot::normal;
+    case Semantic::colour:
+    case Semantic::secondary_colour:
+        return Slot::colour;
+    default:
+        return Slot::generic;
+    }
+}
 
 /// Bytes in GPU memory. `address` is where they lie; assigned by Resources::place().
 struct Buffer {
@@ -32,11 +80,13 @@ struct Buffer {
 struct VertexAttribute {
     Semantic semantic = Semantic::position;
     ComponentType type = ComponentType::f32;
-    std::uint8_t components = 3; ///< 1 to 4
+    std::uint8_t components = 3; ///< 1 to 4; 4 of packed types
     bool normalized = false;
     std::uint32_t buffer = 0;
     std::uint64_t offset = 0;
     std::uint32_t stride = 12; ///< bytes; tightly packed data states its real element size here
+
+    std::uint32_t bytes() const { return element_bytes(type, components); } ///< of one element
 };
 
 enum class Topology : std::uint8_t { triangles, triangle_strip, triangle_fan };
@@ -45,6 +95,20 @@ constexpr std::uint32_t bytes_of(IndexType type) {
     constexpr std::array<std::uint32_t, 4> sizes{0, 1, 2, 4};
     return sizes[static_cast<std::size_t>(type)];
 }
+
+/// The value that ends a primitive where restart is on: the largest one of the type (OpenGL 4.5, section 10.3.6).
+constexpr std::uint32_t restart_index(IndexType type) {
+    constexpr std::array<std::uint32_t, 4> values{0, 0xFF, 0xFFFF, 0xFFFFFFFF};
+    return values[static_cast<std::size_t>(type)];
+}
+
+/// Indices between two restarts that make at least one triangle.
+struct IndexRun {
+    std::uint32_t first_index = 0;
+    std::uint32_t first_triangle = 0; ///< triangles of the runs before
+
+    bool operator==(const IndexRun&) const = default;
+};
 
 /// The vertex input of a draw.
 struct Geometry {
@@ -56,11 +120,22 @@ struct Geometry {
     std::uint32_t index_buffer = 0;
     std::uint64_t index_offset = 0;
     std::uint32_t index_count = 0; ///< number of indices, or of vertices when not indexed
+    /// An index of restart_index() ends a strip, a fan or a begun triangle of a list; it counts in index_count.
+    bool primitive_restart = false;
+    /// With primitive restart: where triangles begin, and behind them {index_count, all triangles}. Filled by
+    /// Resources::find_runs().
+    std::vector<IndexRun> runs;
 
     const VertexAttribute* find(Semantic semantic) const;
-    /// Triangles the topology makes of index_count indices, degenerate ones included.
+    /// Triangles the topology makes of the indices, degenerate ones included.
     std::uint32_t triangle_count() const;
 };
+
+/// Triangles of `count` indices without a restart.
+constexpr std::uint32_t triangles_of(Topology topology, std::uint32_t count) {
+    if (topology == Topology::triangles) return count / 3;
+    return count < 3 ? 0 : count - 2;
+}
 
 enum class Wrap : std::uint8_t { repeat, clamp, mirror };
 enum class Filter : std::uint8_t {
@@ -95,7 +170,7 @@ struct Material {
     std::string name;
     glm::vec4 base_colour{1.0F};    ///< linear RGBA factor
     std::int32_t base_texture = -1; ///< index into Resources::textures, -1 = none
-    std::uint8_t texcoord = 0;      ///< which texcoord attribute
+    std::uint8_t texcoord = 0;      ///< which set of texture coordinates, 0 to 7
     glm::mat3 uv_transform{1.0F};   ///< KHR_texture_transform
     AlphaMode alpha_mode = AlphaMode::opaque;
     float alpha_cutoff = 0.5F;
@@ -122,8 +197,11 @@ struct Resources {
 
     /// Gives every buffer and texture level an address in GPU memory, 256-byte aligned, in order.
     void place();
-    /// Throws sim::InputError naming `where` when an index, offset or length is out of range, or when an index value
-    /// of an index buffer is >= vertex_count.
+    /// Fills Geometry::runs where primitive restart is on. Index buffers that are too short leave no runs behind, which
+    /// validate() refuses.
+    void find_runs();
+    /// Throws sim::InputError naming `where` when an index, offset or length is out of range, when an index value of
+    /// an index buffer is >= vertex_count (the restart index aside), or when runs are not those of the indices.
     void validate(const std::string& where) const;
 };
 
@@ -135,3 +213,16 @@ struct View {
 };
 
 } // namespace pipeline
+
+template <>
+struct sim::EnumNames<pipeline::ComponentType> {
+    static constexpr std::array<std::string_view, 9> names{"f32", "f16", "s8",          "u8",         "s16",
+                                                           "u16", "u32", "s10_10_10_2", "u10_10_10_2"};
+};
+
+template <>
+struct sim::EnumNames<pipeline::Semantic> {
+    static constexpr std::array<std::string_view, pipeline::semantics> names{
+        "position",  "normal",    "colour",    "secondary_colour", "texcoord0", "texcoord1", "texcoord2",
+        "texcoord3", "texcoord4", "texcoord5", "texcoord6",        "texcoord7", "generic"};
+};

@@ -16,6 +16,14 @@ namespace pipeline {
 enum class DepthFormat : std::uint8_t { d16, d24, d32f };
 enum class ColourFormat : std::uint8_t { rgba8, rgba16f, rgba32f };
 
+/// How the vertices of a frame come to the GPU.
+enum class Submission : std::uint8_t {
+    buffers,       ///< they lie in buffers of the GPU
+    client_arrays, ///< arrays of the application, handed over with every draw
+    immediate,     ///< vertex by vertex
+    display_list   ///< recorded before, in a form of the driver's own
+};
+
 enum class PassKind : std::uint8_t {
     clear,   ///< sets `writes` to their initial values
     draw,    ///< rasterizes `draws`
@@ -43,6 +51,8 @@ struct Pass {
     BlendMode blend = BlendMode::replace; ///< how; but for replace, Frame::opacity scales the alpha
     bool both_faces = false;              ///< draws triangles that face away, too
     bool kbuffer = false;                 ///< fragments go through the frame's modify program
+    /// Attributes that the vertex shader reads beside what shading needs: bits as in mask_of(Semantic).
+    std::uint32_t attributes = 0;
 };
 
 /// What the passes of a frame use. Units, attributes and surfaces that nothing here asks for are not built, fetched or
@@ -54,11 +64,13 @@ struct Needs {
     bool texcoords = false;
     bool textures = false;
     bool alpha_test = false;
-    bool colours = false; ///< fragments carry a colour
-    bool depth = false;   ///< depth surface and its tile cache
+    bool colours = false;      ///< fragments carry a colour
+    bool flat_colours = false; ///< it is the base colour of their material: nothing is interpolated, lit or discarded
+    bool depth = false;        ///< depth surface and its tile cache
     bool early_depth = false;
     bool colour_surface = false;
     bool kbuffer = false;
+    std::uint32_t attributes = 0; ///< union of Pass::attributes
 };
 
 /// Something the frame, or this GPU, could have had and does not, and why.
@@ -72,6 +84,7 @@ struct Frame {
     std::shared_ptr<const Resources> resources;
     std::vector<Draw> draws;
     View view;
+    Submission submission = Submission::buffers;
     std::vector<Pass> passes;
     Needs needs;
     std::vector<LeftOut> left_out;                ///< by the pass graph: culled passes, unread attributes

@@ -25,6 +25,7 @@ static_assert(sim::fully_described<ClockParams>);
 
 struct GpuParams {
     ClockParams clock;
+    HostParams host;
     GeometryParams geometry;
     RasterizerParams raster;
     EarlyDepthParams early_depth;
@@ -38,6 +39,7 @@ struct GpuParams {
     static constexpr auto fields() {
         using P = GpuParams;
         return std::tuple{sim::field<&P::clock>("Clocks"),
+                          sim::field<&P::host>("Computer, driver and bus"),
                           sim::field<&P::geometry>("From draw call to triangle"),
                           sim::field<&P::raster>("Rasterizer"),
                           sim::field<&P::early_depth>("Early depth test"),

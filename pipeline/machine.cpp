@@ -86,7 +86,7 @@ void Machine::link() {
     sim::connect(units.front.triangles_out(), units.rasterizer->triangles_in, {1, gpu_.raster.tiles_per_clk, 16});
     // Inputs are as wide as the wider side, so that the unit, not the wire, sets the rate.
     const sim::ChannelConfig to_scheduler{lookup, std::max(width, accepted),
-                                          static_cast<std::uint32_t>(8 * width * (lookup + 1))};
+                                          static_cast<std::uint32_t>(8 * (lookup + 1) * width)};
     if (units.early_depth) {
         sim::connect(units.rasterizer->quads_out, units.early_depth->quads_in, {1, width, 4 * width});
         sim::ChannelConfig delayed = to_scheduler;

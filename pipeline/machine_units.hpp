@@ -42,7 +42,7 @@ struct Machine::Units {
         : simulation(options.seed, options.mode),
           core(simulation.add_clock("core", gpu.clock.core_mhz)),
           memory(simulation, core, gpu.memory),
-          front(simulation, core, gpu.geometry, frame, frame.needs) {}
+          front(simulation, core, gpu.geometry, frame, frame.needs, gpu.host) {}
 
     sim::Simulation simulation;
     const sim::Clock& core;

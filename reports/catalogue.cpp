@@ -5,8 +5,10 @@
 #include "models/programs/library.hpp"
 #include "pipeline/gpu_params.hpp"
 #include "reports/counter_reference.hpp"
+#include "reports/study.hpp"
 #include "ropsim_build.hpp"
 #include "traces/generators.hpp"
+#include "traces/preparation.hpp"
 #include "traces/workloads.hpp"
 
 #include <algorithm>
@@ -85,6 +87,19 @@ std::vector<CatalogueEntry> generators() {
     return entries;
 }
 
+std::vector<CatalogueEntry> preparations() {
+    std::vector<CatalogueEntry> entries;
+    for (const traces::Preparation& preparation : traces::preparations())
+        entries.push_back({"preparations", preparation.id, preparation.summary, preparation.parameters});
+    return entries;
+}
+
+std::vector<CatalogueEntry> studies() {
+    std::vector<CatalogueEntry> entries;
+    for (const std::string& name : study_names()) entries.push_back({"studies", name, load_study(name).question, {}});
+    return entries;
+}
+
 CatalogueEntry field_entry(std::string topic, std::string name, const sim::FieldInfo& field) {
     CatalogueEntry entry{std::move(topic), std::move(name), detail_text(field), {}};
     return entry;
@@ -135,6 +150,8 @@ const std::vector<CatalogueTopic>& catalogue_topics() {
         {"programs", "what a fragment does to the entries of its pixel", true, programs},
         {"workloads", "rendering methods (--workload)", true, workloads},
         {"generators", "scenes made by rule (SCENE)", true, generators},
+        {"preparations", "what can be done to meshes (--prepare of ropsim geometry)", true, preparations},
+        {"studies", "questions with a sweep, a table and a plot (ropsim study)", true, studies},
         {"params", "every number of GPU, designs and workloads (--set)", false, parameters},
         {"stats", "every counter of every stage", false, counters}};
     return topics;

@@ -30,9 +30,9 @@ struct ComparisonRequest {
 
 /// How far a comparison is; written by it, read by whoever shows it.
 struct Progress {
-    enum class Phase : std::uint8_t { reading, shading, reference, simulating, writing };
+    enum class Phase : std::uint8_t { reading, shading, reference, simulating, writing, measuring };
     std::atomic<Phase> phase = Phase::reading;
-    std::atomic<double> share = 0;             ///< of the shading, 0 to 1
+    std::atomic<double> share = 0;             ///< of the shading, or of the measurements, 0 to 1
     std::atomic<std::uint64_t> quads_done = 0; ///< of all designs together
     std::atomic<std::uint64_t> quads_total = 0;
 };

@@ -5,8 +5,10 @@
 #include "traces/generators/table.hpp"
 #include "traces/hash.hpp"
 
+#include <array>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <span>
 
 namespace traces {
 
@@ -22,14 +24,27 @@ const Generator& find_generator(const std::string& id) {
         fmt::format("gen:{}: expected one of {}{}", id, fmt::join(known, ", "), sim::did_you_mean(id, known)));
 }
 
-nlohmann::ordered_json values_in(std::string_view text, std::string_view place) {
-    auto values = nlohmann::ordered_json::object();
-    while (!text.empty()) {
-        const std::size_t next = text.find('&');
-        add_assignment(values, text.substr(0, next), place);
-        text = next == std::string_view::npos ? std::string_view() : text.substr(next + 1);
+/// Attributes in the formats of the generators' defaults; others count in the hash, beside their bytes.
+bool is_customary(const pipeline::VertexAttribute& attribute) {
+    using pipeline::ComponentType;
+    switch (slot_of(attribute.semantic)) {
+    case pipeline::Slot::position:
+    case pipeline::Slot::normal:
+        return attribute.type == ComponentType::f32;
+    case pipeline::Slot::colour:
+        return attribute.semantic == pipeline::Semantic::colour && attribute.type == ComponentType::u8;
+    default:
+        return false;
     }
-    return values;
+}
+
+void add_formats(ContentHash& hash, const pipeline::Geometry& geometry) {
+    for (const pipeline::VertexAttribute& attribute : geometry.attributes) {
+        if (is_customary(attribute)) continue;
+        const std::array<std::uint8_t, 3> format{static_cast<std::uint8_t>(attribute.semantic),
+                                                 static_cast<std::uint8_t>(attribute.type), attribute.components};
+        hash.add_values(std::span(format.data(), format.size()));
+    }
 }
 
 std::string hash_of(const Scene& scene) {
@@ -39,6 +54,7 @@ std::string hash_of(const Scene& scene) {
         const pipeline::Geometry& geometry = scene.resources->geometries[draw.geometry];
         hash.add_values(std::span(&geometry.vertex_count, 1));
         hash.add_values(std::span(&geometry.index_count, 1));
+        add_formats(hash, geometry);
         hash.add_values(std::span(draw.instances));
     }
     return hash.hex();
@@ -61,7 +77,7 @@ Scene generate_scene(std::string_view spec) {
     const Generator& generator = find_generator(id);
     const auto text = question == std::string_view::npos ? std::string_view() : rest.substr(question + 1);
 
-    Scene scene = generator.build(values_in(text, fmt::format("gen:{}", id)));
+    Scene scene = generator.build(values_of_query(text, fmt::format("gen:{}", id)));
     scene.name = std::string(spec);
     for (const pipeline::Geometry& geometry : scene.resources->geometries) scene.triangles += geometry.triangle_count();
     finish_scene(scene);

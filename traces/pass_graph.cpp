@@ -1,5 +1,6 @@
 #include "traces/pass_graph.hpp"
 
+#include "pipeline/geometry/vertex_fetch.hpp" // reads_attribute
 #include "sim/check.hpp"
 
 #include <algorithm>
@@ -47,8 +48,8 @@ class Culling {
         kept_.push_back(std::move(pass));
     }
 
-    std::vector<Pass> kept() && { return reversed(std::move(kept_)); }
-    std::vector<LeftOut> left_out() && { return reversed(std::move(left_out_)); }
+    std::vector<Pass> kept() const { return reversed(kept_); }
+    std::vector<LeftOut> left_out() const { return reversed(left_out_); }
 
   private:
     void drop_unread_writes(Pass& pass) {
@@ -84,15 +85,15 @@ struct Offers {
     bool textured_mask = false;
     bool normals = false; ///< of lit materials
     bool vertex_colours = false;
-    bool textures = false; ///< with coordinates to read them at
+    bool textures = false;        ///< with coordinates to read them at
+    std::uint32_t attributes = 0; ///< all that the geometries have: bits as in mask_of(Semantic)
 };
 
 void add_draw_to(Offers& offers, const pipeline::Resources& resources, const pipeline::Draw& draw) {
     const pipeline::Geometry& geometry = resources.geometries[draw.geometry];
     const pipeline::Material& material = resources.materials[draw.material];
     const auto* colour = geometry.find(Semantic::colour);
-    const bool textured = material.base_texture >= 0 &&
-                          geometry.find(material.texcoord == 0 ? Semantic::texcoord0 : Semantic::texcoord1) != nullptr;
+    const bool textured = material.base_texture >= 0 && geometry.find(pipeline::texcoord(material.texcoord)) != nullptr;
     const bool mask = material.alpha_mode == AlphaMode::mask;
     offers.indices |= geometry.index_type != pipeline::IndexType::none;
     offers.alpha_test |= mask;
@@ -101,6 +102,7 @@ void add_draw_to(Offers& offers, const pipeline::Resources& resources, const pip
     offers.normals |= !material.unlit && geometry.find(Semantic::normal) != nullptr;
     offers.vertex_colours |= colour != nullptr;
     offers.textures |= textured;
+    for (const auto& attribute : geometry.attributes) offers.attributes |= mask_of(attribute.semantic);
 }
 
 Offers offers_of(const Frame& frame) {
@@ -110,7 +112,7 @@ Offers offers_of(const Frame& frame) {
     return offers;
 }
 
-Needs needs_of(const Frame& frame, const Offers& offers) {
+Needs needs_of(const Frame& frame, const Offers& offers, bool flat_colours) {
     Needs needs;
     for (const Pass& pass : frame.passes) {
         needs.colours |= pass.colour || (pass.kbuffer && frame.program->needs_colour());
@@ -118,8 +120,11 @@ Needs needs_of(const Frame& frame, const Offers& offers) {
         needs.early_depth |= pass.depth.test && !pass.depth.write;
         needs.colour_surface |= contains(pass.writes, colour_surface) || contains(pass.reads, colour_surface);
         needs.kbuffer |= pass.kbuffer;
+        needs.attributes |= pass.attributes;
     }
     needs.index_buffer = offers.indices;
+    needs.flat_colours = flat_colours && needs.colours;
+    if (flat_colours) return needs;
     needs.alpha_test = offers.alpha_test;
     needs.normals = needs.colours && offers.normals;
     needs.vertex_colours = (needs.colours && offers.vertex_colours) || offers.alpha_in_mask;
@@ -128,7 +133,38 @@ Needs needs_of(const Frame& frame, const Offers& offers) {
     return needs;
 }
 
-void list_left_out(std::vector<LeftOut>& list, const Needs& needs, const Offers& offers) {
+// Attributes that are fetched for at least one draw.
+std::uint32_t read_attributes(const Frame& frame) {
+    std::uint32_t read = 0;
+    for (const Pass& pass : frame.passes)
+        for (const std::uint32_t number : pass.draws) {
+            const pipeline::Draw& draw = frame.draws[number];
+            const auto& material = frame.resources->materials[draw.material];
+            for (const auto& attribute : frame.resources->geometries[draw.geometry].attributes)
+                if (reads_attribute(frame.needs, material, attribute.semantic)) read |= mask_of(attribute.semantic);
+        }
+    return read;
+}
+
+constexpr std::uint32_t all_texcoords = [] {
+    std::uint32_t mask = 0;
+    for (std::uint32_t set = 0; set < pipeline::texcoord_sets; ++set) mask |= mask_of(pipeline::texcoord(set));
+    return mask;
+}();
+
+// Attributes that only some geometries have: listed one by one where they are there and nobody reads them.
+void list_further_attributes(std::vector<LeftOut>& list, const Offers& offers, std::uint32_t read) {
+    constexpr const char* reason = "no vertex shader and no drawn material reads them";
+    std::uint32_t unread = offers.attributes & ~read;
+    if ((read & all_texcoords) == 0) unread &= ~mask_of(Semantic::texcoord0); // listed as texture coordinates
+    if ((unread & mask_of(Semantic::secondary_colour)) != 0) list.push_back({"secondary colours", reason});
+    for (std::uint32_t set = 0; set < pipeline::texcoord_sets; ++set)
+        if ((unread & mask_of(pipeline::texcoord(set))) != 0)
+            list.push_back({fmt::format("texture coordinates {}", set), reason});
+    if ((unread & mask_of(Semantic::generic)) != 0) list.push_back({"generic attributes", reason});
+}
+
+void list_left_out(std::vector<LeftOut>& list, const Needs& needs, const Offers& offers, std::uint32_t read) {
     const auto add = [&](bool needed, const char* unit, const char* reason) {
         if (!needed) list.push_back({unit, reason});
     };
@@ -136,17 +172,19 @@ void list_left_out(std::vector<LeftOut>& list, const Needs& needs, const Offers&
     const auto unless_offered = [](bool offered, const char* missing, const char* unread) {
         return offered ? unread : missing;
     };
-    constexpr const char* no_colours = "no pass reads colours";
-    constexpr const char* no_reader = "no pass reads colours and no alpha test reads it";
+    constexpr const char* flat = "fragments have the base colour of their material";
+    const char* no_colours = needs.flat_colours ? flat : "no pass reads colours";
+    const char* no_reader = needs.flat_colours ? flat : "no pass reads colours and no alpha test reads it";
     constexpr const char* no_texture = "no drawn material has a texture and coordinates for it";
     add(needs.index_buffer, "index buffer", "no drawn geometry has indices");
-    add(needs.normals, "normals",
+    add((read & mask_of(Semantic::normal)) != 0, "normals",
         unless_offered(offers.normals, "no drawn geometry with a lit material has them", no_colours));
-    add(needs.vertex_colours, "vertex colours",
+    add((read & mask_of(Semantic::colour)) != 0, "vertex colours",
         unless_offered(offers.vertex_colours, "no drawn geometry has them", no_reader));
-    add(needs.texcoords, "texture coordinates", unless_offered(offers.textures, no_texture, no_reader));
+    add((read & all_texcoords) != 0, "texture coordinates", unless_offered(offers.textures, no_texture, no_reader));
+    list_further_attributes(list, offers, read);
     add(needs.textures, "textures", unless_offered(offers.textures, no_texture, no_reader));
-    add(needs.alpha_test, "alpha test", "no drawn material tests alpha");
+    add(needs.alpha_test, "alpha test", unless_offered(offers.alpha_test, "no drawn material tests alpha", flat));
     add(needs.colours, "colours", no_colours);
     add(needs.depth, "depth surface", "no pass tests or writes depth");
     add(needs.early_depth, "early depth test", "no pass tests a depth surface that it does not write");
@@ -185,6 +223,13 @@ void PassGraph::add_draw(std::string name, std::vector<std::string> reads, std::
     passes_.push_back(std::move(pass));
 }
 
+void PassGraph::vertex_shader_reads(std::uint32_t attributes) {
+    CHECK(!passes_.empty() && passes_.back().kind == PassKind::draw);
+    passes_.back().attributes = attributes;
+}
+
+void PassGraph::use_flat_colours() { flat_colours_ = true; }
+
 void PassGraph::add_resolve(std::string name, std::vector<std::string> reads, std::vector<std::string> writes) {
     Pass pass;
     pass.name = std::move(name);
@@ -204,7 +249,7 @@ Frame PassGraph::lower() const {
     Culling culling(outputs_);
     for (auto pass = passes_.rbegin(); pass != passes_.rend(); ++pass) culling.visit(*pass);
     Frame frame = frame_;
-    frame.passes = std::move(culling).kept();
+    frame.passes = culling.kept();
     for (Pass& pass : frame.passes) {
         if (pass.kind != PassKind::draw) continue;
         pass.depth = {contains(pass.reads, depth_surface), contains(pass.writes, depth_surface)};
@@ -212,11 +257,11 @@ Frame PassGraph::lower() const {
         pass.kbuffer = contains(pass.writes, kbuffer_surface);
     }
     const Offers offers = offers_of(frame);
-    frame.needs = needs_of(frame, offers);
+    frame.needs = needs_of(frame, offers, flat_colours_);
     if (!frame.needs.kbuffer) frame.program = nullptr;
     frame.left_out = left_out_;
-    for (LeftOut& item : std::move(culling).left_out()) frame.left_out.push_back(std::move(item));
-    list_left_out(frame.left_out, frame.needs, offers);
+    for (LeftOut& item : culling.left_out()) frame.left_out.push_back(std::move(item));
+    list_left_out(frame.left_out, frame.needs, offers, read_attributes(frame));
     return frame;
 }
 

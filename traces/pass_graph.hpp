@@ -3,6 +3,7 @@
 
 #include "pipeline/frame.hpp"
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,11 @@ class PassGraph {
     void add_draw(std::string name, std::vector<std::string> reads, std::vector<std::string> writes,
                   std::vector<std::uint32_t> draws, bool both_faces = false,
                   pipeline::BlendMode blend = pipeline::BlendMode::replace);
+    /// The vertex shader of the pass added last reads these attributes beside what shading needs: bits as in
+    /// pipeline::mask_of().
+    void vertex_shader_reads(std::uint32_t attributes);
+    /// All fragments take the base colour of their material, whatever the geometry has; none is discarded.
+    void use_flat_colours();
     void add_resolve(std::string name, std::vector<std::string> reads, std::vector<std::string> writes);
     /// This surface is what the frame is for.
     void output(std::string surface);
@@ -41,6 +47,7 @@ class PassGraph {
 
   private:
     pipeline::Frame frame_;
+    bool flat_colours_ = false;
     std::vector<pipeline::Pass> passes_;
     std::vector<std::string> outputs_;
     std::vector<pipeline::LeftOut> left_out_;

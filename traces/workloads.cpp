@@ -12,7 +12,8 @@ namespace traces {
 void WorkloadOptions::set(std::string_view assignment) { add_assignment(values, assignment, "workload"); }
 
 const std::vector<Workload>& workloads() {
-    static const std::vector<Workload> list = {transparency_workload(), opaque_workload(), blended_workload()};
+    static const std::vector<Workload> list = {transparency_workload(), opaque_workload(), blended_workload(),
+                                               geometry_workload()};
     return list;
 }
 

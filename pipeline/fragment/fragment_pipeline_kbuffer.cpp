@@ -37,8 +37,9 @@ void FragmentPipeline::lookup_targets(std::uint16_t index) {
     thread.block = pass_->layout.block_of(quad.x, quad.y);
     thread.generation = l1_.generation();
     thread.own = all_targets();
-    texture_free_ = std::max(texture_free_, cycle()) + texture_.cycles_per_rgba32f * program_targets_;
-    stats_.texture_cycles += texture_.cycles_per_rgba32f * program_targets_;
+    const sim::Cycle cost = std::uint64_t{texture_.cycles_per_rgba32f} * program_targets_;
+    texture_free_ = std::max(texture_free_, cycle()) + cost;
+    stats_.texture_cycles += cost;
     ++stats_.kbuffer_reads;
     if (!uses_l1()) {
         stats_.l1.kbuffer_misses += parts;
@@ -111,7 +112,7 @@ void FragmentPipeline::fill_l1(const Thread& thread, std::uint64_t targets) {
         const std::uint32_t line = l1_.put_kbuffer(thread.block, part);
         if (line == TextureCache::none) continue;
         for (std::uint32_t pixel = 0; pixel < 4; ++pixel) {
-            const float* from = payloads_->values(thread.task.slot, pixel) + first * 4;
+            const float* from = payloads_->values(thread.task.slot, pixel) + std::size_t{first} * 4;
             std::copy(from, from + line_targets_ * 4, l1_.data(line, pixel, 0));
             l1_.version(line, pixel) = payloads_->version(thread.task.slot, pixel, first);
         }
@@ -126,7 +127,7 @@ void FragmentPipeline::give_to_waiting(const Thread& from, std::uint64_t targets
         for (std::uint64_t left = shared; left != 0; left &= left - 1) {
             const auto target = static_cast<std::uint32_t>(std::countr_zero(left));
             for (std::uint32_t pixel = 0; pixel < 4; ++pixel)
-                payloads_->sample(thread.task.slot, pixel, target, payloads_->values(slot, pixel) + target * 4,
+                payloads_->sample(thread.task.slot, pixel, target, payloads_->values(slot, pixel) + std::size_t{target} * 4,
                                   payloads_->version(slot, pixel, target), (*payloads_)[slot].last_read);
         }
         thread.merged &= ~shared;

@@ -51,7 +51,7 @@ class QuadPayloads {
     /// Copies one render target of one pixel into the slot, with its version and the time it was sampled.
     void sample(std::uint32_t slot, std::uint32_t pixel, std::uint32_t target, const float* four,
                 PixelVersion version_read, sim::Cycle at) {
-        float* to = values(slot, pixel) + target * 4;
+        float* to = values(slot, pixel) + std::size_t{target} * 4;
         for (int channel = 0; channel < 4; ++channel) to[channel] = four[channel];
         version(slot, pixel, target) = version_read;
         QuadPayload& payload = payloads_[slot];

@@ -16,6 +16,7 @@ namespace pipeline {
 
 struct FrontEndOptions {
     bool colours = true;                     ///< fill FragmentStream::colours
+    bool flat_colours = false;               ///< colours are the materials' base colours, nothing else
     bool textures = true;                    ///< read textures; without, materials have their base colour only
     bool both_faces = false;                 ///< keep triangles that face away, whatever their material says
     bool alpha_test = true;                  ///< discard fragments of masked materials

@@ -37,7 +37,7 @@ struct RasterTriangle {
 // differences, and the walk leaves the bounding box by less than a tile.
 inline constexpr std::int64_t largest_coordinate =
     (static_cast<std::int64_t>(guard_band_pixels * 1.001F) + largest_viewport / 2 + 1) * subpixel_one;
-inline constexpr std::int64_t largest_difference = 2 * largest_coordinate + 2 * tile_size * subpixel_one;
+inline constexpr std::int64_t largest_difference = 2 * largest_coordinate + std::int64_t{2} * tile_size * subpixel_one;
 inline constexpr std::int64_t largest_edge_function = 2 * largest_difference * largest_difference;
 static_assert(largest_coordinate < (std::int64_t{1} << 24));
 static_assert(largest_edge_function < (std::int64_t{1} << 53));

@@ -39,10 +39,6 @@ std::optional<AttributeReader> reader(const Resources& resources, const Geometry
     return AttributeReader(resources, *attribute);
 }
 
-Semantic texcoord_of(const Material& material) {
-    return material.texcoord == 0 ? Semantic::texcoord0 : Semantic::texcoord1;
-}
-
 float lambert(float cosine) { return ambient_light + (1.0F - ambient_light) * cosine; }
 
 } // namespace
@@ -51,15 +47,17 @@ FragmentShader::FragmentShader(const Resources& resources, const Geometry& geome
                                const glm::mat4& model_to_eye, const ShaderOptions& options)
     : options_(options),
       positions_(resources, *geometry.find(Semantic::position)),
-      normals_(reader(resources, geometry, options.colours && !material.unlit, Semantic::normal)),
-      colours_(reader(resources, geometry, true, Semantic::colour)),
-      texcoords_(reader(resources, geometry, options.textures && material.base_texture >= 0, texcoord_of(material))),
+      normals_(
+          reader(resources, geometry, options.colours && !options.flat_colours && !material.unlit, Semantic::normal)),
+      colours_(reader(resources, geometry, !options.flat_colours, Semantic::colour)),
+      texcoords_(
+          reader(resources, geometry, options.textures && material.base_texture >= 0, texcoord(material.texcoord))),
       normal_matrix_(normal_matrix(model_to_eye)),
       texcoord_matrix_(material.uv_transform),
       base_colour_(bounded_vector(material.base_colour, largest_colour)),
       alpha_cutoff_(material.alpha_cutoff),
       discards_(options.alpha_test && material.alpha_mode == AlphaMode::mask),
-      lit_(options.colours && !material.unlit),
+      lit_(options.colours && !options.flat_colours && !material.unlit),
       keeps_alpha_(material.transparent()) {
     if (texcoords_ && needed()) sampler_.emplace(resources.textures[static_cast<std::size_t>(material.base_texture)]);
 }

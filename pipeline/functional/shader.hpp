@@ -27,6 +27,7 @@ ShaderCost shader_cost(const Material& material, const Geometry& geometry, const
 /// What the fragments of a draw are asked for.
 struct ShaderOptions {
     bool colours = true;
+    bool flat_colours = false; ///< the base colour, neither lit nor multiplied by vertex colours
     bool textures = true;
     bool alpha_test = true;
 };

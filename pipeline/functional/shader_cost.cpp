@@ -6,14 +6,13 @@ namespace pipeline {
 ShaderCost shader_cost(const Material& material, const Geometry& geometry, const Needs& needs) {
     const bool tests = needs.alpha_test && material.alpha_mode == AlphaMode::mask;
     ShaderCost cost{1, 0, 1}; // the result's own move and register
-    if (!needs.colours && !tests) return cost;
+    if (needs.flat_colours || (!needs.colours && !tests)) return cost;
 
-    const Semantic texcoord = material.texcoord == 0 ? Semantic::texcoord0 : Semantic::texcoord1;
     if (needs.vertex_colours && geometry.find(Semantic::colour) != nullptr) {
         cost.alu += 2; // interpolate, multiply
         cost.registers += 1;
     }
-    if (needs.textures && material.base_texture >= 0 && geometry.find(texcoord) != nullptr) {
+    if (needs.textures && material.base_texture >= 0 && geometry.find(texcoord(material.texcoord)) != nullptr) {
         cost.alu += 2; // interpolate, multiply
         cost.textures += 1;
         cost.registers += 2;

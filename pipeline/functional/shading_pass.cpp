@@ -19,7 +19,10 @@ namespace {
 constexpr std::size_t quads_per_piece = 8192;
 
 ShaderOptions shader_options(const FrontEndOptions& options) {
-    return {options.colours, options.textures, options.alpha_test};
+    return {.colours = options.colours,
+            .flat_colours = options.flat_colours,
+            .textures = options.textures && !options.flat_colours,
+            .alpha_test = options.alpha_test && !options.flat_colours};
 }
 
 FragmentShader make_shader(const FrontEndPlan& plan, const PlannedInstance& instance) {

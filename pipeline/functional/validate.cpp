@@ -45,19 +45,22 @@ bool fits(std::uint64_t offset, std::uint64_t count, std::uint64_t stride, std::
 void validate_attribute(const Resources& resources, const Geometry& geometry, const VertexAttribute& attribute,
                         const Complaint& complain) {
     const auto number = static_cast<unsigned>(attribute.semantic);
-    complain.require(number <= static_cast<unsigned>(Semantic::texcoord1), "a known semantic, not {}", number);
-    complain.require(static_cast<unsigned>(attribute.type) <= static_cast<unsigned>(ComponentType::u32),
-                     "a known component type, not {}", static_cast<unsigned>(attribute.type));
-    complain.require(attribute.components >= 1 && attribute.components <= 4,
-                     "1 to 4 components in attribute {}, not {}", number, attribute.components);
-    complain.require(attribute.buffer < resources.buffers.size(), "attribute {} to name one of {} buffers, not {}",
-                     number, resources.buffers.size(), attribute.buffer);
-    const std::uint32_t size = bytes_of(attribute.type) * attribute.components;
-    complain.require(attribute.stride >= size, "a stride of at least {} bytes in attribute {}, not {}", size, number,
+    complain.require(number < semantics, "a known semantic, not {}", number);
+    const std::string_view name = sim::enum_name(attribute.semantic);
+    complain.require(attribute.type <= last_component_type, "a known component type, not {}",
+                     static_cast<unsigned>(attribute.type));
+    complain.require(attribute.components >= 1 && attribute.components <= 4, "1 to 4 components in {}, not {}", name,
+                     attribute.components);
+    complain.require(!is_packed(attribute.type) || attribute.components == 4, "4 components of {} in {}, not {}",
+                     sim::enum_name(attribute.type), name, attribute.components);
+    complain.require(attribute.buffer < resources.buffers.size(), "{} to name one of {} buffers, not {}", name,
+                     resources.buffers.size(), attribute.buffer);
+    const std::uint32_t size = attribute.bytes();
+    complain.require(attribute.stride >= size, "a stride of at least {} bytes in {}, not {}", size, name,
                      attribute.stride);
     const std::uint64_t available = resources.buffers[attribute.buffer].bytes.size();
     complain.require(fits(attribute.offset, geometry.vertex_count, attribute.stride, size, available),
-                     "attribute {} ({} elements of {} bytes, stride {}, from offset {}) within {} bytes", number,
+                     "{} ({} elements of {} bytes, stride {}, from offset {}) within {} bytes", name,
                      geometry.vertex_count, size, attribute.stride, attribute.offset, available);
 }
 
@@ -77,9 +80,27 @@ void validate_indices(const Resources& resources, const Geometry& geometry, cons
                      "{} indices of {} bytes from offset {} within {} bytes", geometry.index_count, size,
                      geometry.index_offset, available);
     const IndexReader index(resources, geometry);
-    for (std::uint32_t i = 0; i < geometry.index_count; ++i)
+    for (std::uint32_t i = 0; i < geometry.index_count; ++i) {
+        if (geometry.primitive_restart && index(i) == restart_index(geometry.index_type)) continue;
         complain.require(index(i) < geometry.vertex_count, "index {} below the vertex count {}, not {}", i,
                          geometry.vertex_count, index(i));
+    }
+}
+
+void validate_runs(const Resources& resources, const Geometry& geometry, const Complaint& complain) {
+    if (!geometry.primitive_restart) {
+        complain.require(geometry.runs.empty(), "no runs of indices without primitive restart");
+        return;
+    }
+    complain.require(geometry.index_type != IndexType::none, "indices where primitives are restarted");
+    complain.require(geometry.runs == index_runs(resources, geometry), "the runs between the restarts of its indices");
+}
+
+bool indices_fit(const Resources& resources, const Geometry& geometry) {
+    const std::uint32_t size = bytes_of(geometry.index_type);
+    return geometry.index_buffer < resources.buffers.size() &&
+           fits(geometry.index_offset, geometry.index_count, size, size,
+                resources.buffers[geometry.index_buffer].bytes.size());
 }
 
 void validate_geometry(const Resources& resources, const Geometry& geometry, const Complaint& complain) {
@@ -91,6 +112,7 @@ void validate_geometry(const Resources& resources, const Geometry& geometry, con
         validate_attribute(resources, geometry, attribute, complain);
     }
     validate_indices(resources, geometry, complain);
+    validate_runs(resources, geometry, complain);
 }
 
 void validate_texture(const Texture& texture, const Complaint& complain) {
@@ -115,7 +137,7 @@ void validate_material(const Resources& resources, const Material& material, con
     const auto textures = static_cast<std::int64_t>(resources.textures.size());
     complain.require(material.base_texture >= -1 && material.base_texture < textures,
                      "a base texture of -1 to {}, not {}", textures - 1, material.base_texture);
-    complain.require(material.texcoord <= 1, "texture coordinates 0 or 1, not {}", material.texcoord);
+    complain.require(material.texcoord < texcoord_sets, "texture coordinates 0 to 7, not {}", material.texcoord);
     bool finite = std::isfinite(material.alpha_cutoff) && std::isfinite(material.transmission);
     for (int i = 0; i < 4; ++i) finite = finite && std::isfinite(material.base_colour[i]);
     for (int column = 0; column < 3; ++column)
@@ -124,6 +146,15 @@ void validate_material(const Resources& resources, const Material& material, con
 }
 
 } // namespace
+
+void Resources::find_runs() {
+    for (Geometry& geometry : geometries) {
+        geometry.runs.clear();
+        const bool indexed = geometry.index_type != IndexType::none && geometry.index_type <= IndexType::u32;
+        if (geometry.primitive_restart && indexed && indices_fit(*this, geometry))
+            geometry.runs = index_runs(*this, geometry);
+    }
+}
 
 void Resources::validate(const std::string& where) const {
     for (std::size_t i = 0; i < geometries.size(); ++i)

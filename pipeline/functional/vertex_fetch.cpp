@@ -30,6 +30,25 @@ glm::vec4 halves(const std::byte* source, std::uint32_t components) {
     return result;
 }
 
+/// Three components of 10 bits and one of 2; `normalized` divides by the largest value of each.
+template <bool is_signed>
+glm::vec4 packed_10_10_10_2(const std::byte* source, bool normalized) {
+    constexpr std::array<std::uint32_t, 4> widths{10, 10, 10, 2};
+    std::uint32_t word = 0;
+    std::memcpy(&word, source, sizeof(word));
+    glm::vec4 result;
+    std::uint32_t first = 0;
+    for (std::size_t i = 0; i < widths.size(); first += widths[i++]) {
+        const std::uint32_t field = word >> first & ((1U << widths[i]) - 1);
+        const bool negative = is_signed && (field >> (widths[i] - 1)) != 0;
+        double value = static_cast<double>(field) - (negative ? static_cast<double>(1U << widths[i]) : 0.0);
+        const std::uint32_t largest = (1U << (widths[i] - (is_signed ? 1 : 0))) - 1;
+        if (normalized) value = std::max(value / largest, -1.0);
+        result[static_cast<int>(i)] = static_cast<float>(value);
+    }
+    return result;
+}
+
 } // namespace
 
 glm::vec4 AttributeReader::converted(const std::byte* source) const {
@@ -46,24 +65,46 @@ glm::vec4 AttributeReader::converted(const std::byte* source) const {
         return integers<std::uint16_t>(source, components_, normalized_);
     case ComponentType::u32:
         return integers<std::uint32_t>(source, components_, normalized_);
+    case ComponentType::s10_10_10_2:
+        return packed_10_10_10_2<true>(source, normalized_);
+    case ComponentType::u10_10_10_2:
+        return packed_10_10_10_2<false>(source, normalized_);
     case ComponentType::f32:
         break;
     }
     return floats(source);
 }
 
+std::vector<IndexRun> index_runs(const Resources& resources, const Geometry& geometry) {
+    const IndexReader index(resources, geometry);
+    std::vector<IndexRun> runs;
+    std::uint32_t begin = 0;
+    std::uint32_t triangles = 0;
+    for (std::uint64_t i = 0; i <= geometry.index_count; ++i) {
+        const auto place = static_cast<std::uint32_t>(i);
+        if (i < geometry.index_count && index(place) != restart_index(geometry.index_type)) continue;
+        if (const std::uint32_t made = triangles_of(geometry.topology, place - begin); made > 0) {
+            runs.push_back({begin, triangles});
+            triangles += made;
+        }
+        begin = place + 1;
+    }
+    runs.push_back({geometry.index_count, triangles});
+    return runs;
+}
+
 VertexRange used_vertices(const Resources& resources, const Geometry& geometry) {
-    if (geometry.index_count == 0) return {};
     if (geometry.index_type == IndexType::none) return {0, geometry.index_count};
     const IndexReader index(resources, geometry);
-    std::uint32_t least = index(0);
-    std::uint32_t greatest = least;
-    for (std::uint32_t i = 1; i < geometry.index_count; ++i) {
+    const std::uint32_t restart = restart_index(geometry.index_type);
+    VertexRange used{std::numeric_limits<std::uint32_t>::max(), 0};
+    for (std::uint32_t i = 0; i < geometry.index_count; ++i) {
         const std::uint32_t value = index(i);
-        least = std::min(least, value);
-        greatest = std::max(greatest, value);
+        if (geometry.primitive_restart && value == restart) continue;
+        used.first = std::min(used.first, value);
+        used.end = std::max(used.end, value + 1);
     }
-    return {least, greatest + 1};
+    return used.end == 0 ? VertexRange{} : used;
 }
 
 } // namespace pipeline

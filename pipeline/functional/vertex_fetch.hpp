@@ -6,18 +6,21 @@
 #include "pipeline/draw.hpp"
 #include "pipeline/functional/number_formats.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <glm/vec4.hpp>
+#include <span>
 
 namespace pipeline {
 
 /// Reads elements of one vertex attribute as four floats.
 ///
 /// Missing components are 0, the fourth 1 (OpenGL 4.5, section 10.2). Normalised signed integers map to
-/// max(c / (2^(b-1) - 1), -1), unsigned ones to c / (2^b - 1) (section 2.3.5); others to their value.
+/// max(c / (2^(b-1) - 1), -1), unsigned ones to c / (2^b - 1) (section 2.3.5); others to their value. Packed types have
+/// components of b = 10, 10, 10 and 2 bits.
 class AttributeReader {
   public:
     AttributeReader(const Resources& resources, const VertexAttribute& attribute)
@@ -90,34 +93,50 @@ class IndexReader {
     IndexType type_;
 };
 
-/// Assembles the primitives of a geometry in its topology.
+/// Assembles the primitives of a geometry in its topology, which must outlive the reader.
 class PrimitiveReader {
   public:
     PrimitiveReader(const Resources& resources, const Geometry& geometry)
-        : index_(resources, geometry), topology_(geometry.topology) {}
+        : index_(resources, geometry), topology_(geometry.topology), runs_(geometry.runs) {}
+
+    /// The run of indices that a triangle is made of; all of them where primitive restart is off.
+    IndexRun run_of(std::uint32_t primitive) const {
+        if (runs_.empty()) return {};
+        return *(std::upper_bound(runs_.begin(), runs_.end(), primitive,
+                                  [](std::uint32_t p, const IndexRun& run) { return p < run.first_triangle; }) -
+                 1);
+    }
 
     /// The three vertices of a primitive; every second triangle of a strip is turned round so that all wind alike
     /// (glTF 2.0, section 3.7.2.1).
     std::array<std::uint32_t, 3> operator()(std::uint32_t primitive) const {
+        const IndexRun run = run_of(primitive);
+        const std::uint32_t triangle = primitive - run.first_triangle;
+        std::uint32_t first = run.first_index + triangle;
         switch (topology_) {
         case Topology::triangle_strip: {
-            const std::uint32_t odd = primitive & 1U;
-            return {index_(primitive), index_(primitive + 1 + odd), index_(primitive + 2 - odd)};
+            const std::uint32_t odd = triangle & 1U;
+            return {index_(first), index_(first + 1 + odd), index_(first + 2 - odd)};
         }
         case Topology::triangle_fan:
-            return {index_(primitive + 1), index_(primitive + 2), index_(0)};
+            return {index_(first + 1), index_(first + 2), index_(run.first_index)};
         case Topology::triangles:
             break;
         }
-        return {index_(3 * primitive), index_(3 * primitive + 1), index_(3 * primitive + 2)};
+        first += 2 * triangle;
+        return {index_(first), index_(first + 1), index_(first + 2)};
     }
 
   private:
     IndexReader index_;
     Topology topology_;
+    std::span<const IndexRun> runs_;
 };
 
-/// The vertices [first, end) that the indices of a geometry lie in; {0, 0} when it draws nothing.
+/// What Geometry::runs has to hold where primitive restart is on; the index buffer has to be in range.
+std::vector<IndexRun> index_runs(const Resources& resources, const Geometry& geometry);
+
+/// The vertices [first, end) that the indices of a geometry lie in, restarts aside; {0, 0} when there are none.
 struct VertexRange {
     std::uint32_t first = 0;
     std::uint32_t end = 0;

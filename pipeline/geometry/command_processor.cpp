@@ -8,8 +8,9 @@ namespace {
 constexpr double ps_per_us = 1e6;
 }
 
-CommandProcessor::CommandProcessor(sim::Context context, const Params& params, const GeometryPass& pass)
-    : Component(std::move(context)), params_(params), pass_(&pass) {}
+CommandProcessor::CommandProcessor(sim::Context context, const Params& params, const GeometryPass& pass,
+                                   double frame_us)
+    : Component(std::move(context)), params_(params), frame_us_(frame_us), pass_(&pass) {}
 
 void CommandProcessor::start() {
     CHECK_MSG(activity() == sim::Activity::idle && !starting_, name());
@@ -28,7 +29,9 @@ bool CommandProcessor::begins_call() const {
 bool CommandProcessor::take() {
     sim::Cycle cost = 0;
     if (begins_call()) {
-        const auto cpu_time = static_cast<sim::Time>(calls_ * params_.draw_cpu_us * ps_per_us + 0.5);
+        if (!converted_) cpu_us_ += pass_->term(next_).cpu_us;
+        converted_ = true;
+        const auto cpu_time = static_cast<sim::Time>(cpu_us_ * ps_per_us + 0.5);
         const sim::Cycle submitted = clock().cycle_at(start_ + cpu_time);
         if (submitted > cycle()) {
             wake_at(submitted);
@@ -36,7 +39,8 @@ bool CommandProcessor::take() {
         }
         stats_.cpu_wait_cycles += submitted - std::min(submitted, free_);
         cost = params_.draw_gpu_cycles;
-        ++calls_;
+        cpu_us_ += params_.draw_cpu_us;
+        converted_ = false;
         ++stats_.draws;
     }
     set_up_at_ = cycle() + cost;
@@ -50,7 +54,8 @@ sim::Activity CommandProcessor::tick() {
         starting_ = false;
         free_ = cycle();
         next_ = 0;
-        calls_ = 0;
+        converted_ = false;
+        cpu_us_ = pass_->number == 1 ? frame_us_ : 0;
     }
     if (next_ == pass_->ranges.size()) return sim::Activity::idle;
     if (!taken_ && !take()) return sim::Activity::starved;

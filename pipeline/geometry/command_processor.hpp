@@ -1,6 +1,7 @@
 // The command processor: takes draw commands as the processor (CPU) submits them and sets the pipeline up for each.
 //
-// Modelled: a draw call arrives no earlier than the calls before it have cost on the CPU; its state costs GPU cycles,
+// Modelled: a draw call arrives no earlier than the calls before it and its own conversions (host.hpp) have cost on the
+// CPU; its state costs GPU cycles,
 // while earlier draws are still being drawn. The instances of one draw are one call, of which only the first pays. Not
 // modelled: the bus that commands arrive over; dependencies between draws. Source: specification 004, sections 2.1, 5
 // (draw_cpu_us, draw_gpu_cycles), 9.1.
@@ -49,7 +50,8 @@ class CommandProcessor final : public sim::Component {
 
     sim::Out<DrawCommand> draws_out{*this, "draws_out"};
 
-    CommandProcessor(sim::Context context, const Params& params, const GeometryPass& pass);
+    /// @param frame_us CPU time before the first draw of the first pass
+    CommandProcessor(sim::Context context, const Params& params, const GeometryPass& pass, double frame_us = 0);
 
     /// Begins with the first range of the pass at the next clock edge. Called between runs.
     void start();
@@ -63,14 +65,16 @@ class CommandProcessor final : public sim::Component {
     bool take();              ///< false: not submitted yet
 
     Params params_;
+    double frame_us_;
     const GeometryPass* pass_;
     Stats stats_;
     bool starting_ = false;
-    sim::Time start_ = 0;     ///< first edge of the pass
-    std::uint32_t next_ = 0;  ///< range to be sent next
-    std::uint32_t calls_ = 0; ///< draw calls begun in this pass
-    bool taken_ = false;      ///< range next_ is being set up
-    sim::Cycle free_ = 0;     ///< edge at which the range before it left
+    sim::Time start_ = 0;    ///< first edge of the pass
+    std::uint32_t next_ = 0; ///< range to be sent next
+    double cpu_us_ = 0;      ///< CPU time of the pass up to the submission of range next_
+    bool converted_ = false; ///< ... with the conversion of its vertices
+    bool taken_ = false;     ///< range next_ is being set up
+    sim::Cycle free_ = 0;    ///< edge at which the range before it left
     sim::Cycle set_up_at_ = 0;
 };
 

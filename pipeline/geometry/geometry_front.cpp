@@ -3,6 +3,7 @@
 #include "pipeline/memory/memory_system.hpp"
 #include "pipeline/memory/unit_report.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 
 namespace pipeline {
@@ -26,6 +27,12 @@ std::uint64_t at_or_zero(const std::vector<std::uint64_t>& values, std::uint32_t
     return index < values.size() ? values[index] : 0;
 }
 
+// Indices cost in turn with vertices on this port, or because they cross the bus.
+bool indices_pass_port(const InputPortParams& port, const std::vector<DrawTerms>& terms) {
+    return port.index_bytes_per_clk > 0 ||
+           std::any_of(terms.begin(), terms.end(), [](const DrawTerms& draw) { return draw.host_share > 0; });
+}
+
 template <class Stats>
 Stats at_or_empty(const std::vector<Stats>& values, std::uint32_t index) {
     return index < values.size() ? values[index] : Stats{};
@@ -34,11 +41,14 @@ Stats at_or_empty(const std::vector<Stats>& values, std::uint32_t index) {
 } // namespace
 
 GeometryFront::GeometryFront(sim::Simulation& simulation, const sim::Clock& clock, const GeometryParams& params,
-                             const Frame& frame, const Needs& needs)
+                             const Frame& frame, const Needs& needs, const HostParams& host)
     : frame_(&frame),
-      command_processor_(simulation.context("geometry.command_processor", clock), params.command_processor, pass_),
-      vertex_reuse_(simulation.context("geometry.vertex_reuse", clock), params.vertex_reuse, pass_),
-      vertex_fetch_(simulation.context("geometry.vertex_fetch", clock), params.vertex_fetch, pass_, needs),
+      terms_(draw_terms(host, frame)),
+      command_processor_(simulation.context("geometry.command_processor", clock), params.command_processor, pass_,
+                         host.frame_us),
+      vertex_reuse_(simulation.context("geometry.vertex_reuse", clock), params.vertex_reuse, pass_,
+                    indices_pass_port(params.vertex_fetch.port, terms_)),
+      vertex_fetch_(simulation.context("geometry.vertex_fetch", clock), params.vertex_fetch, pass_, needs, host),
       vertex_shader_(simulation.context("geometry.vertex_shader", clock), params.vertex_shader),
       primitive_assembly_(simulation.context("geometry.primitive_assembly", clock), params.primitive_assembly),
       clip_cull_(simulation.context("geometry.clip_cull", clock), params.clip_cull, pass_),
@@ -49,19 +59,27 @@ GeometryFront::GeometryFront(sim::Simulation& simulation, const sim::Clock& cloc
     else
         primitive_counter_ =
             std::make_unique<PrimitiveCounter>(simulation.context("geometry.primitive_counter", clock), pass_);
+    if (frame.submission != Submission::buffers)
+        host_feed_ = std::make_unique<HostFeed>(simulation.context("geometry.host_feed", clock), pass_);
     link_index_path();
     link_vertex_path(params);
+}
+
+sim::In<IndexedPrimitive>& GeometryFront::behind_index_path() {
+    return host_feed_ != nullptr ? host_feed_->primitives_in : vertex_reuse_.primitives_in;
 }
 
 void GeometryFront::link_index_path() {
     if (index_fetch_ != nullptr) {
         connect(command_processor_.draws_out, index_fetch_->draws_in, link_of(1));
-        connect(index_fetch_->primitives_out, vertex_reuse_.primitives_in,
-                link_of(index_fetch_->params().primitives_per_clk));
+        connect(index_fetch_->primitives_out, behind_index_path(), link_of(index_fetch_->params().primitives_per_clk));
     } else {
         connect(command_processor_.draws_out, primitive_counter_->draws_in, link_of(1));
-        connect(primitive_counter_->primitives_out, vertex_reuse_.primitives_in, link_of(1));
+        connect(primitive_counter_->primitives_out, behind_index_path(), link_of(1));
     }
+    if (host_feed_ != nullptr)
+        connect(host_feed_->primitives_out, vertex_reuse_.primitives_in,
+                link_of(index_fetch_ != nullptr ? index_fetch_->params().primitives_per_clk : 1));
 }
 
 void GeometryFront::link_vertex_path(const GeometryParams& params) {
@@ -91,15 +109,21 @@ void GeometryFront::start(const FragmentStream& stream, std::span<const Draw> dr
 
 void GeometryFront::start(const FragmentStream& stream, std::span<const Draw> draws,
                           std::span<const DrawRange> ranges) {
-    pass_ = {pass_.number + 1, &stream, frame_->resources.get(), draws, ranges};
+    CHECK(draws.size() == terms_.size()); // ranges count the draws of the frame
+    pass_ = {pass_.number + 1, &stream, frame_->resources.get(), draws, ranges, terms_};
     command_processor_.start();
 }
 
 GeometryStats GeometryFront::stats() const {
-    return {command_processor_.stats(), index_fetch_ != nullptr ? index_fetch_->stats() : primitive_counter_->stats(),
-            vertex_reuse_.stats(),      vertex_fetch_.stats(),
-            vertex_shader_.stats(),     primitive_assembly_.stats(),
-            clip_cull_.stats(),         triangle_setup_.stats()};
+    return {command_processor_.stats(),
+            index_fetch_ != nullptr ? index_fetch_->stats() : primitive_counter_->stats(),
+            host_feed_ != nullptr ? host_feed_->stats() : HostFeedStats{},
+            vertex_reuse_.stats(),
+            vertex_fetch_.stats(),
+            vertex_shader_.stats(),
+            primitive_assembly_.stats(),
+            clip_cull_.stats(),
+            triangle_setup_.stats()};
 }
 
 GeometryDrawStats GeometryFront::draw_stats(std::uint32_t draw) const {
@@ -123,6 +147,7 @@ nlohmann::ordered_json GeometryFront::report() const {
         report["index_fetch"] = unit_report(*index_fetch_);
     else
         report["primitive_counter"] = unit_report(*primitive_counter_);
+    if (host_feed_ != nullptr) report["host_feed"] = unit_report(*host_feed_);
     report["vertex_reuse"] = unit_report(vertex_reuse_);
     report["vertex_fetch"] = unit_report(vertex_fetch_);
     report["vertex_shader"] = unit_report(vertex_shader_);

@@ -4,11 +4,13 @@
 //   setup
 //                        (or counter)      `-> vertex fetch -> vertex shader -'
 //
-// The index fetch unit is built only for frames that read an index buffer.
+// The index fetch unit is built only for frames that read an index buffer; the feed from the host stands before vertex
+// reuse only when vertices do not come from buffers of the GPU.
 #pragma once
 
 #include "pipeline/geometry/clip_cull.hpp"
 #include "pipeline/geometry/command_processor.hpp"
+#include "pipeline/geometry/host_feed.hpp"
 #include "pipeline/geometry/index_fetch.hpp"
 #include "pipeline/geometry/primitive_assembly.hpp"
 #include "pipeline/geometry/triangle_setup.hpp"
@@ -51,6 +53,7 @@ static_assert(sim::fully_described<GeometryParams>);
 struct GeometryStats {
     CommandProcessorStats command_processor;
     IndexFetchStats index_fetch; ///< of the primitive counter when that is built instead
+    HostFeedStats host_feed;
     VertexReuseStats vertex_reuse;
     VertexFetchStats vertex_fetch;
     VertexShaderStats vertex_shader;
@@ -62,6 +65,7 @@ struct GeometryStats {
         using S = GeometryStats;
         return std::tuple{sim::field<&S::command_processor>("Command processor"),
                           sim::field<&S::index_fetch>("Index fetch unit or primitive counter"),
+                          sim::field<&S::host_feed>("Vertices from the application"),
                           sim::field<&S::vertex_reuse>("Post-transform cache"),
                           sim::field<&S::vertex_fetch>("Vertex fetch unit and pre-transform cache"),
                           sim::field<&S::vertex_shader>("Vertex shader units"),
@@ -103,7 +107,7 @@ class GeometryFront {
     /// Builds what `needs` asks for; components are named "geometry.command_processor" and so on. `frame` must outlive
     /// this.
     GeometryFront(sim::Simulation& simulation, const sim::Clock& clock, const GeometryParams& params,
-                  const Frame& frame, const Needs& needs);
+                  const Frame& frame, const Needs& needs, const HostParams& host = {});
 
     /// Links the memory ports to the crossbar.
     void attach(MemorySystem& memory);
@@ -117,6 +121,7 @@ class GeometryFront {
     void start(const FragmentStream& stream, std::span<const Draw> draws, std::span<const DrawRange> ranges);
 
     bool has_index_fetch() const { return index_fetch_ != nullptr; }
+    const std::vector<DrawTerms>& terms() const { return terms_; } ///< by draw of the frame
     GeometryStats stats() const;
     GeometryDrawStats draw_stats(std::uint32_t draw) const;
     /// Stage name -> params, counters, activity in cycles; only stages that are built.
@@ -124,13 +129,16 @@ class GeometryFront {
 
   private:
     void link_index_path();
+    sim::In<IndexedPrimitive>& behind_index_path();
     void link_vertex_path(const GeometryParams& params);
 
     const Frame* frame_;
+    std::vector<DrawTerms> terms_; ///< of frame_->draws
     GeometryPass pass_;
     CommandProcessor command_processor_;
     std::unique_ptr<IndexFetch> index_fetch_;
     std::unique_ptr<PrimitiveCounter> primitive_counter_;
+    std::unique_ptr<HostFeed> host_feed_;
     VertexReuse vertex_reuse_;
     VertexFetch vertex_fetch_;
     VertexShader vertex_shader_;

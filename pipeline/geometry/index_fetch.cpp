@@ -41,9 +41,14 @@ IndexFetch::Work IndexFetch::work_of(std::uint32_t range_number) {
               .primitives = range.primitives,
               .first_line = lines_,
               .end_line = lines_};
-    if (work.index_bytes == 0 || work.primitives == 0) return work;
+    if (work.index_bytes == 0) return work;
+    if (geometry.primitive_restart && range.primitives == geometry.triangle_count())
+        work.end_index = geometry.index_count;
+    else if (work.primitives > 0)
+        work.end_index = work.indices_needed(work.primitives - 1);
+    if (work.end_index == 0) return work;
     const std::uint64_t first = pass_->resources->buffers[geometry.index_buffer].address + geometry.index_offset;
-    const std::uint64_t bytes = std::uint64_t{work.index_bytes} * work.indices_needed(work.primitives - 1);
+    const std::uint64_t bytes = std::uint64_t{work.index_bytes} * work.end_index;
     work.address = first / params_.line * params_.line;
     work.skip = static_cast<std::uint32_t>(first % params_.line);
     work.end_line += (work.skip + bytes + params_.line - 1) / params_.line;
@@ -100,6 +105,12 @@ std::uint64_t IndexFetch::line_of(const Work& work, std::uint32_t index) const {
     return work.first_line + (work.skip + std::uint64_t{index} * work.index_bytes) / params_.line;
 }
 
+// True when the line in which an index ends is there.
+bool IndexFetch::arrived(const Work& work, std::uint32_t index) const {
+    const std::uint64_t last_byte = work.skip + (std::uint64_t{index} + 1) * work.index_bytes - 1;
+    return work.first_line + last_byte / params_.line < arrived_;
+}
+
 bool IndexFetch::spend(std::uint32_t bytes) {
     const std::uint64_t cost = bytes * parts_of_a_byte;
     credit_ = std::min(rate_ + largest_read * parts_of_a_byte, credit_ + (cycle() - credited_) * rate_);
@@ -118,21 +129,36 @@ void IndexFetch::finish_draw() {
     work_.pop_front();
 }
 
+sim::Activity IndexFetch::pass_over(Work& work, std::uint32_t end) {
+    while (work.read < end) {
+        if (!arrived(work, work.read) || !spend(work.index_bytes)) return sim::Activity::memory;
+        ++work.read;
+        ++stats_.indices;
+        used_up_ = line_of(work, work.read);
+    }
+    return sim::Activity::busy;
+}
+
 sim::Activity IndexFetch::send_primitive() {
     Work& work = work_.front();
     if (work.index_bytes != 0) {
-        const std::uint64_t last_byte =
-            work.skip + std::uint64_t{work.indices_needed(work.next)} * work.index_bytes - 1;
-        if (work.first_line + last_byte / params_.line >= arrived_) return sim::Activity::memory;
+        const std::uint32_t needed = work.indices_needed(work.next);
+        const sim::Activity activity = pass_over(work, needed - work.new_indices(work.next));
+        if (activity != sim::Activity::busy) return activity;
+        if (!arrived(work, needed - 1)) return sim::Activity::memory;
     }
     if (!primitives_out.ready()) return sim::Activity::blocked;
+    std::uint32_t bytes = 0;
     if (work.index_bytes != 0) {
-        const std::uint32_t indices = work.new_indices();
+        const std::uint32_t indices = work.new_indices(work.next);
         if (!spend(indices * work.index_bytes)) return sim::Activity::memory;
         stats_.indices += indices;
+        work.read += indices;
+        bytes = (work.read - work.reported) * work.index_bytes;
+        work.reported = work.read;
         used_up_ = line_of(work, work.first_index_after(work.next));
     }
-    primitives_out.send({work.first_primitive + work.next, work.range, work.reader(work.next)});
+    primitives_out.send({work.first_primitive + work.next, work.range, work.reader(work.next), bytes});
     ++work.next;
     ++stats_.primitives;
     return sim::Activity::busy;
@@ -142,14 +168,17 @@ sim::Activity IndexFetch::tick() {
     bool progress = take_lines();
     progress |= take_draw();
     progress |= request_lines();
+    const std::uint64_t indices = stats_.indices.value;
     sim::Activity activity = sim::Activity::starved;
     while (!work_.empty()) {
-        if (work_.front().next == work_.front().primitives)
-            finish_draw();
-        else if ((activity = send_primitive()) != sim::Activity::busy)
-            break;
+        Work& work = work_.front();
+        const bool all_sent = work.next == work.primitives;
+        activity = all_sent ? pass_over(work, work.end_index) : send_primitive();
+        if (activity != sim::Activity::busy) break;
+        if (all_sent) finish_draw();
         progress = true;
     }
+    progress |= stats_.indices.value != indices;
     if (progress) return sim::Activity::busy;
     return work_.empty() ? sim::Activity::starved : activity;
 }
@@ -165,7 +194,7 @@ sim::Activity PrimitiveCounter::tick() {
         } else {
             if (!primitives_out.ready()) return progress ? sim::Activity::busy : sim::Activity::blocked;
             const PrimitiveReader reader(*pass_->resources, pass_->geometry(command->range));
-            primitives_out.send({range.first_primitive + next_, command->range, reader(next_)});
+            primitives_out.send({range.first_primitive + next_, command->range, reader(next_), 0});
             ++stats_.primitives;
             ++next_;
         }

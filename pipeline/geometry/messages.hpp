@@ -20,13 +20,15 @@ struct IndexedPrimitive {
     std::uint32_t primitive = 0;
     std::uint32_t range = 0;
     std::array<std::uint32_t, 3> vertices{};
+    std::uint32_t index_bytes = 0; ///< read for this primitive and not for the one before
 };
 
-/// Vertex reuse -> vertex fetch: a vertex that has to be shaded.
+/// Vertex reuse -> vertex fetch: a vertex that has to be shaded, or only index bytes that pass the input port.
 struct VertexRequest {
-    std::uint32_t sequence = 0;
+    std::uint32_t sequence = 0; ///< 0: no vertex
     std::uint32_t range = 0;
     std::uint32_t vertex = 0;
+    std::uint32_t index_bytes = 0; ///< read since the request before this one
 };
 
 /// Vertex reuse -> primitive assembly: a primitive with the sequence numbers of its shaded vertices.

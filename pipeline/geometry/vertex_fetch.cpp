@@ -2,28 +2,15 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 namespace pipeline {
 
-bool reads_attribute(const Needs& needs, const Material& material, Semantic semantic) {
-    switch (semantic) {
-    case Semantic::position:
-        return true;
-    case Semantic::normal:
-        return needs.normals;
-    case Semantic::colour:
-        return needs.vertex_colours;
-    case Semantic::texcoord0:
-        return needs.texcoords && material.texcoord == 0;
-    case Semantic::texcoord1:
-        return needs.texcoords && material.texcoord == 1;
-    }
-    return false;
-}
-
-VertexFetch::VertexFetch(sim::Context context, const Params& params, const GeometryPass& pass, const Needs& needs)
+VertexFetch::VertexFetch(sim::Context context, const Params& params, const GeometryPass& pass, const Needs& needs,
+                         const HostParams& host)
     : Component(std::move(context)),
       params_(params),
+      host_(host),
       pass_(&pass),
       needs_(needs),
       cache_(params.cache, "geometry.vertex_fetch.cache"),
@@ -34,19 +21,18 @@ VertexFetch::VertexFetch(sim::Context context, const Params& params, const Geome
 VertexFetch::Stats VertexFetch::stats() const {
     Stats stats = stats_;
     stats.cache = cache_.stats();
+    stats.port_cycles = {port_parts_ / InputCost::parts_of_a_cycle};
     return stats;
 }
 
 void VertexFetch::begin_range(std::uint32_t range) {
     const Resources& resources = *pass_->resources;
     const Material& material = resources.materials[pass_->draw(range).material];
-    streams_.clear();
-    for (const VertexAttribute& attribute : pass_->geometry(range).attributes)
-        if (reads_attribute(needs_, material, attribute.semantic))
-            streams_.push_back({resources.buffers[attribute.buffer].address + attribute.offset, attribute.stride,
-                                bytes_of(attribute.type) * attribute.components});
-    // Attributes that lie side by side share lines; in order of address a shared one is the last line looked up.
-    std::sort(streams_.begin(), streams_.end(), [](const Stream& a, const Stream& b) { return a.address < b.address; });
+    lines_ = VertexLines(resources, pass_->geometry(range), material, needs_, params_.cache.line);
+    const InputLayout layout = input_layout(needs_, pass_->geometry(range), material);
+    const double core_mhz = 1e6 / static_cast<double>(clock().period);
+    cost_ = input_cost(input_cost_parts(params_.port, host_, pass_->term(range), layout, params_.cache.line, core_mhz));
+    draw_cost_ = cost_.draw;
     pass_number_ = pass_->number;
     range_ = range;
     draw_ = pass_->range(range).draw;
@@ -56,26 +42,11 @@ void VertexFetch::begin_range(std::uint32_t range) {
 void VertexFetch::begin_vertex(const VertexRequest& request) {
     if (request.range != range_ || pass_->number != pass_number_) begin_range(request.range);
     present_ = {request.sequence, 0};
-    vertex_ = request.vertex;
-    stream_ = 0;
-    line_ = 0;
-    end_line_ = 0;
+    lines_.begin(request.vertex);
+    if (request.sequence == 0) lines_.end();
+    port_cost_ = request.index_bytes * cost_.index_byte + (request.sequence == 0 ? 0 : cost_.vertex);
+    port_cost_ += std::exchange(draw_cost_, 0);
     holding_ = true;
-}
-
-// Leaves in line_ the next line of the present vertex; false when there is none.
-bool VertexFetch::next_line() {
-    while (line_ == end_line_) {
-        if (stream_ == streams_.size()) return false;
-        const Stream& stream = streams_[stream_];
-        const std::uint64_t first = stream.address + std::uint64_t{vertex_} * stream.stride;
-        const std::uint64_t end = cache_.line_of(first + stream.bytes - 1) + 1;
-        line_ = cache_.line_of(first);
-        if (stream_ > 0 && line_ + 1 == end_line_) ++line_; // looked up for the attribute before
-        end_line_ = end;
-        ++stream_;
-    }
-    return true;
 }
 
 bool VertexFetch::look_up_line(std::uint64_t line) {
@@ -88,6 +59,7 @@ bool VertexFetch::look_up_line(std::uint64_t line) {
         return true;
     }
     if (fills_ - filled_ >= params_.lines_in_flight || !requests_out.ready()) return false;
+    port_cost_ += cost_.line;
     fill_of_[cache_.access(line).slot] = ++fills_;
     present_.last_fill = fills_;
     requests_out.send({.address = line * cache_.line_bytes(),
@@ -102,6 +74,19 @@ bool VertexFetch::look_up_line(std::uint64_t line) {
     return true;
 }
 
+// A vertex passes when the port has moved all that came before it.
+bool VertexFetch::pass_port() {
+    if (port_cost_ == 0) return true;
+    const std::uint64_t now_parts = cycle() * InputCost::parts_of_a_cycle;
+    if (port_free_ >= now_parts + InputCost::parts_of_a_cycle) {
+        wake_at(port_free_ / InputCost::parts_of_a_cycle);
+        return false;
+    }
+    port_free_ = std::max(port_free_, now_parts) + port_cost_;
+    port_parts_ += port_cost_;
+    return true;
+}
+
 bool VertexFetch::look_up() {
     bool progress = false;
     for (std::uint32_t lines = 0;;) {
@@ -112,14 +97,16 @@ bool VertexFetch::look_up() {
             vertices_in.pop();
             progress = true;
         }
-        for (; next_line(); ++line_, ++lines) {
+        for (; lines_.more(); lines_.next(), ++lines) {
             if (lines == params_.lines_per_clk) return true;
-            if (!look_up_line(line_)) return progress;
+            if (!look_up_line(lines_.line())) return progress;
             progress = true;
         }
-        waiting_.push(present_);
+        if (!pass_port()) return progress;
+        if (present_.sequence != 0) waiting_.push(present_);
         stats_.vertices_in_flight.note(waiting_.size());
         holding_ = false;
+        progress = true;
     }
 }
 

@@ -2,16 +2,18 @@
 //
 // Modelled: the byte ranges of the attributes that the frame reads, cut into lines; lines shared by neighbouring
 // attributes of one vertex are looked up once; a line cache whose tags are set when a miss is sent, so that later
-// accesses wait for the same fill; bounded misses and vertices on their way; delivery in order. Not modelled: format
-// conversion; the range limit of a draw (specification 004, section 5, M1-M3). Sources: specification 004,
-// sections 2.1, 5, 9.2; the latency-hiding FIFO between tags and data is that of Igehy, Eldridge, Proudfoot,
+// accesses wait for the same fill; bounded misses and vertices on their way; delivery in order; the input port, which
+// moves indices, lines and attributes one after the other (input_port.hpp). Sources: specification 004, sections 2.1,
+// 5, 9.2; the latency-hiding FIFO between tags and data is that of Igehy, Eldridge, Proudfoot,
 // "Prefetching in a Texture Cache Architecture", 1998.
 #pragma once
 
 #include "pipeline/fixed_queue.hpp"
 #include "pipeline/frame.hpp"
 #include "pipeline/geometry/geometry_pass.hpp"
+#include "pipeline/geometry/input_port.hpp"
 #include "pipeline/geometry/messages.hpp"
+#include "pipeline/geometry/vertex_lines.hpp"
 #include "pipeline/memory/cache.hpp"
 #include "pipeline/memory/messages.hpp"
 #include "sim/channel.hpp"
@@ -24,6 +26,7 @@ struct VertexFetchParams {
     std::uint32_t lines_in_flight = 256;
     std::uint32_t vertices_in_flight = 512;
     std::uint32_t hit_latency = 4;
+    InputPortParams port = {};
 
     static constexpr auto fields() {
         using P = VertexFetchParams;
@@ -34,14 +37,15 @@ struct VertexFetchParams {
             sim::field<&P::vertices_in_flight>("Vertices looked up and not delivered").unit("vertices").range(1, 65536),
             sim::field<&P::hit_latency>("From the tags to the shader when all lines are held")
                 .unit("cycles")
-                .range(1, 1000)};
+                .range(1, 1000),
+            sim::field<&P::port>("Input port")};
     }
 };
 static_assert(sim::fully_described<VertexFetchParams>);
 
 struct VertexFetchStats {
     CacheStats cache;
-    sim::Counter vertices, merged, bytes;
+    sim::Counter vertices, merged, bytes, port_cycles;
     sim::HighWater vertices_in_flight, lines_in_flight;
 
     static constexpr auto fields() {
@@ -51,14 +55,12 @@ struct VertexFetchStats {
             sim::field<&S::vertices>("Vertices delivered").unit("vertices"),
             sim::field<&S::merged>("Hits on lines that were still on their way").unit("accesses"),
             sim::field<&S::bytes>("Bytes requested; misses * line").unit("bytes"),
+            sim::field<&S::port_cycles>("Cycles of the input port at work, when it limits").unit("cycles"),
             sim::field<&S::vertices_in_flight>("Most vertices looked up and not delivered").unit("vertices"),
             sim::field<&S::lines_in_flight>("Most lines requested and not arrived").unit("lines")};
     }
 };
 static_assert(sim::fully_described<VertexFetchStats>);
-
-/// True when a frame with these needs reads the attribute in draws of `material`.
-bool reads_attribute(const Needs& needs, const Material& material, Semantic semantic);
 
 class VertexFetch final : public sim::Component {
   public:
@@ -70,7 +72,9 @@ class VertexFetch final : public sim::Component {
     sim::In<MemoryResponse> responses_in{*this, "responses_in"};
     sim::Out<VertexTask> vertices_out{*this, "vertices_out"};
 
-    VertexFetch(sim::Context context, const Params& params, const GeometryPass& pass, const Needs& needs);
+    /// @param host what the terms of the draws (GeometryPass::terms) refer to
+    VertexFetch(sim::Context context, const Params& params, const GeometryPass& pass, const Needs& needs,
+                const HostParams& host = {});
 
     Stats stats() const;
     const Params& params() const { return params_; }
@@ -78,12 +82,6 @@ class VertexFetch final : public sim::Component {
     const std::vector<std::uint64_t>& draw_bytes() const { return draw_bytes_; }
 
   private:
-    /// Bytes of vertex 0 of one attribute, and the distance to those of vertex 1.
-    struct Stream {
-        std::uint64_t address = 0;
-        std::uint32_t stride = 0;
-        std::uint32_t bytes = 0;
-    };
     /// A vertex that has been looked up: complete when fill `last_fill` and all before it have arrived.
     struct Waiting {
         std::uint32_t sequence = 0;
@@ -97,16 +95,17 @@ class VertexFetch final : public sim::Component {
     bool look_up_line(std::uint64_t line);
     void begin_range(std::uint32_t range);
     void begin_vertex(const VertexRequest& request);
-    bool next_line();
+    bool pass_port();
     bool deliverable() { return !waiting_.empty() && waiting_.front().last_fill <= filled_; }
 
     Params params_;
+    HostParams host_;
     const GeometryPass* pass_;
     Needs needs_;
     Cache cache_;
     Stats stats_;
     std::vector<std::uint64_t> draw_bytes_;
-    std::vector<Stream> streams_; ///< of the present range, by address
+    VertexLines lines_; ///< of the present range and vertex
     std::uint32_t pass_number_ = 0;
     std::uint32_t range_ = 0;
     std::uint32_t draw_ = 0;
@@ -119,10 +118,11 @@ class VertexFetch final : public sim::Component {
     FixedQueue<Waiting> waiting_;
     bool holding_ = false; ///< present_ is being looked up
     Waiting present_;
-    std::uint32_t vertex_ = 0;   ///< its number
-    std::size_t stream_ = 0;     ///< first stream whose lines are not listed yet
-    std::uint64_t line_ = 0;     ///< next line to look up
-    std::uint64_t end_line_ = 0; ///< one past the last line of the stream before stream_
+    std::uint64_t port_cost_ = 0; ///< of the present vertex, in parts of a cycle
+    InputCost cost_;              ///< of the present range
+    std::uint64_t draw_cost_ = 0; ///< of the present range, until its first vertex has paid it
+    std::uint64_t port_free_ = 0; ///< when the port has moved what passed it, in parts of cycles
+    std::uint64_t port_parts_ = 0;
 };
 
 } // namespace pipeline

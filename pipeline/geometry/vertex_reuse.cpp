@@ -4,8 +4,17 @@
 
 namespace pipeline {
 
-VertexReuse::VertexReuse(sim::Context context, const Params& params, const GeometryPass& pass)
-    : Component(std::move(context)), params_(params), pass_(&pass), model_(params) {}
+namespace {
+constexpr std::uint32_t index_bytes_at_once = 64; ///< forwarded without a vertex when so many have gathered
+}
+
+VertexReuse::VertexReuse(sim::Context context, const Params& params, const GeometryPass& pass,
+                         bool forwards_index_bytes)
+    : Component(std::move(context)),
+      params_(params),
+      pass_(&pass),
+      forwards_index_bytes_(forwards_index_bytes),
+      model_(params) {}
 
 void VertexReuse::begin_range(std::uint32_t range) {
     const Geometry& geometry = pass_->geometry(range);
@@ -20,6 +29,7 @@ void VertexReuse::begin_range(std::uint32_t range) {
 void VertexReuse::look_up(const IndexedPrimitive& primitive) {
     if (primitive.range != range_ || pass_->number != pass_number_) begin_range(primitive.range);
     present_ = primitive;
+    if (forwards_index_bytes_) index_bytes_ += primitive.index_bytes;
     result_ = model_.triangle(primitive.vertices);
     unsent_ = result_.missed;
     holding_ = true;
@@ -35,9 +45,18 @@ bool VertexReuse::send_vertices() {
     while (unsent_ != 0) {
         if (!vertices_out.ready()) return false;
         const auto corner = static_cast<std::size_t>(std::countr_zero(unsent_));
-        vertices_out.send({result_.sequences[corner], range_, present_.vertices[corner]});
+        vertices_out.send({result_.sequences[corner], range_, present_.vertices[corner], index_bytes_});
+        index_bytes_ = 0;
         unsent_ = static_cast<std::uint8_t>(unsent_ & (unsent_ - 1));
     }
+    return true;
+}
+
+bool VertexReuse::send_index_bytes() {
+    if (index_bytes_ < index_bytes_at_once) return true;
+    if (!vertices_out.ready()) return false;
+    vertices_out.send({0, range_, 0, index_bytes_});
+    index_bytes_ = 0;
     return true;
 }
 
@@ -52,7 +71,7 @@ sim::Activity VertexReuse::tick() {
             progress = true;
         }
         const std::uint8_t before = unsent_;
-        const bool sent = send_vertices();
+        const bool sent = send_vertices() && send_index_bytes();
         progress |= unsent_ != before;
         if (!sent || !primitives_out.ready()) return progress ? sim::Activity::busy : sim::Activity::blocked;
         primitives_out.send({present_.primitive, present_.range, result_.sequences});

@@ -35,7 +35,9 @@ class VertexReuse final : public sim::Component {
     sim::Out<VertexRequest> vertices_out{*this, "vertices_out"};
     sim::Out<ReusedPrimitive> primitives_out{*this, "primitives_out"};
 
-    VertexReuse(sim::Context context, const Params& params, const GeometryPass& pass);
+    /// @param forwards_index_bytes the vertex fetch unit has to know of the indices that pass its port
+    VertexReuse(sim::Context context, const Params& params, const GeometryPass& pass,
+                bool forwards_index_bytes = false);
 
     const Stats& stats() const { return stats_; }
     const Params& params() const { return params_; }
@@ -47,9 +49,12 @@ class VertexReuse final : public sim::Component {
     void look_up(const IndexedPrimitive& primitive);
     void begin_range(std::uint32_t range);
     bool send_vertices();
+    bool send_index_bytes();
 
     Params params_;
     const GeometryPass* pass_;
+    bool forwards_index_bytes_;
+    std::uint32_t index_bytes_ = 0; ///< read and not yet forwarded
     VertexReuseModel model_;
     Stats stats_;
     std::vector<Stats> draw_stats_;

@@ -41,6 +41,55 @@ ReuseResult FifoReuse::triangle(const std::array<std::uint32_t, 3>& vertices) {
     return result;
 }
 
+LruReuse::LruReuse(std::uint32_t entries) : slots_(std::size_t{entries} + 1) { CHECK(entries >= 3); }
+
+void LruReuse::begin_draw(std::uint32_t vertex_count) {
+    used_ = 1;
+    slots_[0] = {};
+    if (vertex_count > slot_of_.size()) slot_of_.resize(vertex_count, 0);
+}
+
+void LruReuse::take_out(std::uint32_t slot) {
+    const Slot& out = slots_[slot];
+    slots_[out.older].newer = out.newer;
+    slots_[out.newer].older = out.older;
+}
+
+void LruReuse::put_newest(std::uint32_t slot) {
+    const std::uint32_t before = slots_[0].older; // the head's elder neighbour is the newest vertex
+    slots_[slot].older = before;
+    slots_[slot].newer = 0;
+    slots_[before].newer = slot;
+    slots_[0].older = slot;
+}
+
+std::uint32_t LruReuse::free_slot() {
+    if (used_ < slots_.size()) return used_++;
+    const std::uint32_t oldest = slots_[0].newer;
+    take_out(oldest);
+    return oldest;
+}
+
+ReuseResult LruReuse::triangle(const std::array<std::uint32_t, 3>& vertices) {
+    ReuseResult result;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::uint32_t vertex = vertices[i];
+        if (held(vertex)) {
+            take_out(slot_of_[vertex]);
+        } else {
+            CHECK_MSG(next_ != 0, "2^32 vertices shaded in one run");
+            const std::uint32_t slot = free_slot();
+            slots_[slot].vertex = vertex;
+            slots_[slot].run = next_++;
+            slot_of_[vertex] = slot;
+            result.missed = static_cast<std::uint8_t>(result.missed | 1U << i);
+        }
+        put_newest(slot_of_[vertex]);
+        result.sequences[i] = slots_[slot_of_[vertex]].run;
+    }
+    return result;
+}
+
 void MesaReuse::begin_draw(std::uint32_t vertex_count, bool indexed) {
     flushed_ = next_;
     indices_ = 0;
@@ -71,12 +120,14 @@ ReuseResult MesaReuse::triangle(const std::array<std::uint32_t, 3>& vertices) {
 }
 
 namespace {
-std::variant<FifoReuse, MesaReuse> model_of(const VertexReuseParams& params) {
+std::variant<FifoReuse, LruReuse, MesaReuse> model_of(const VertexReuseParams& params) {
     switch (params.model) {
     case ReuseModel::fifo:
         return FifoReuse(params.entries, 0, 0);
     case ReuseModel::batch:
         return FifoReuse(params.entries, params.warp_vertices, params.group_triangles);
+    case ReuseModel::lru:
+        return LruReuse(params.entries);
     case ReuseModel::mesa:
         break;
     }
@@ -87,10 +138,12 @@ std::variant<FifoReuse, MesaReuse> model_of(const VertexReuseParams& params) {
 VertexReuseModel::VertexReuseModel(const VertexReuseParams& params) : model_(model_of(params)) {}
 
 void VertexReuseModel::begin_draw(std::uint32_t vertex_count, bool indexed) {
-    if (FifoReuse* fifo = std::get_if<FifoReuse>(&model_))
-        fifo->begin_draw(vertex_count);
+    if (MesaReuse* mesa = std::get_if<MesaReuse>(&model_))
+        mesa->begin_draw(vertex_count, indexed);
+    else if (LruReuse* lru = std::get_if<LruReuse>(&model_))
+        lru->begin_draw(vertex_count);
     else
-        std::get_if<MesaReuse>(&model_)->begin_draw(vertex_count, indexed);
+        std::get_if<FifoReuse>(&model_)->begin_draw(vertex_count);
 }
 
 std::uint32_t VertexReuseModel::runs() const {

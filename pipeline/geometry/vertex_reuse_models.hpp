@@ -20,13 +20,14 @@ enum class ReuseModel : std::uint8_t {
     fifo,  ///< the last `entries` shaded vertices
     batch, ///< fifo that is emptied when a warp of vertices or a group of triangles is full
     mesa,  ///< runs of 1023 indices, each with a direct-mapped table of 256 entries
+    lru,   ///< the `entries` shaded vertices that were used last
 };
 
 } // namespace pipeline
 
 template <>
 struct sim::EnumNames<pipeline::ReuseModel> {
-    static constexpr std::array<std::string_view, 3> names{"fifo", "batch", "mesa"};
+    static constexpr std::array<std::string_view, 4> names{"fifo", "batch", "mesa", "lru"};
 };
 
 namespace pipeline {
@@ -41,12 +42,16 @@ struct VertexReuseParams {
     static constexpr auto fields() {
         using P = VertexReuseParams;
         return std::tuple{
-            sim::field<&P::model>("Which vertices are still held"),
-            sim::field<&P::entries>("Shaded vertices held (fifo, batch)").unit("vertices").range(3, 1U << 20U),
+            sim::field<&P::model>(
+                "Which vertices are still held: those shaded last (fifo) or used last (lru), those of "
+                "the present batch, as far as entries hold them (batch), or as in llvmpipe (mesa)"),
+            sim::field<&P::entries>("Shaded vertices held (fifo, lru, batch)").unit("vertices").range(3, 1U << 20U),
             sim::field<&P::warp_vertices>("Vertices shaded together, then forgotten (batch); 0: no limit")
                 .unit("vertices")
                 .at_most(1U << 20U),
-            sim::field<&P::group_triangles>("Triangles drawn together, then forgotten (batch); 0: no limit")
+            sim::field<&P::group_triangles>(
+                "Triangles drawn together, then forgotten (batch): a third of the batch's indices, rounded "
+                "down, so 10, 32 or 128 for batches of 32, 96 or 384 indices; 0: no limit")
                 .unit("triangles")
                 .at_most(1U << 20U),
             sim::field<&P::vertices_per_clk>("Vertices sent to be shaded").unit("vertices/cycle").range(1, 64)};
@@ -84,6 +89,35 @@ class FifoReuse {
     std::vector<std::uint32_t> run_of_; ///< by vertex: its latest run, 0 = none
 };
 
+/// Least recently used: a vertex that is used again stays longer.
+class LruReuse {
+  public:
+    explicit LruReuse(std::uint32_t entries); ///< at least 3
+    void begin_draw(std::uint32_t vertex_count);
+    ReuseResult triangle(const std::array<std::uint32_t, 3>& vertices);
+    std::uint32_t runs() const { return next_ - 1; }
+
+  private:
+    /// A held vertex in a ring by time of use; slot 0 is the ring's head.
+    struct Slot {
+        std::uint32_t vertex = 0;
+        std::uint32_t run = 0;
+        std::uint32_t older = 0, newer = 0;
+    };
+    bool held(std::uint32_t vertex) const {
+        const std::uint32_t slot = slot_of_[vertex];
+        return slot != 0 && slot < used_ && slots_[slot].vertex == vertex;
+    }
+    std::uint32_t free_slot();
+    void take_out(std::uint32_t slot);
+    void put_newest(std::uint32_t slot);
+
+    std::uint32_t next_ = 1;
+    std::uint32_t used_ = 1;             ///< slots below hold vertices, or are the head
+    std::vector<Slot> slots_;            ///< the head, then `entries` vertices
+    std::vector<std::uint32_t> slot_of_; ///< by vertex: where it was put last; 0: nowhere
+};
+
 /// Mesa's vertex batches. Without an index buffer each vertex is shaded once.
 class MesaReuse {
   public:
@@ -116,12 +150,12 @@ class VertexReuseModel {
     void begin_draw(std::uint32_t vertex_count, bool indexed);
     ReuseResult triangle(const std::array<std::uint32_t, 3>& vertices) {
         if (FifoReuse* fifo = std::get_if<FifoReuse>(&model_)) return fifo->triangle(vertices);
-        return std::get_if<MesaReuse>(&model_)->triangle(vertices);
+        return std::visit([&](auto& model) { return model.triangle(vertices); }, model_);
     }
     std::uint32_t runs() const;
 
   private:
-    std::variant<FifoReuse, MesaReuse> model_;
+    std::variant<FifoReuse, LruReuse, MesaReuse> model_;
 };
 
 } // namespace pipeline

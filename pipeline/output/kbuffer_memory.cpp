@@ -29,7 +29,7 @@ void KBufferMemory::clear() {
 void KBufferMemory::publish_tile(std::uint32_t tile) {
     if (!split_) return;
     const auto first = static_cast<std::ptrdiff_t>(at(tile * 4, 0));
-    const auto floats = static_cast<std::ptrdiff_t>(16 * floats_);
+    const auto floats = std::ptrdiff_t{16} * floats_;
     std::copy(latest_.begin() + first, latest_.begin() + first + floats, memory_.begin() + first);
     const std::ptrdiff_t pixel = static_cast<std::ptrdiff_t>(tile) * 16;
     std::copy(latest_versions_.begin() + pixel, latest_versions_.begin() + pixel + 16,

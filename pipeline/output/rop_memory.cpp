@@ -136,7 +136,7 @@ bool Rop::accept_reads() {
         }
         const std::uint32_t index = free_jobs_.back();
         const std::uint64_t address =
-            tile_address(Use::kbuffer, tile) + read.block % 4 * (tile_bytes(Use::kbuffer) / 4);
+            tile_address(Use::kbuffer, tile) + std::uint64_t{read.block % 4} * (tile_bytes(Use::kbuffer) / 4);
         free_jobs_.pop_back();
         jobs_[index].read = read;
         if (plan_->shader.atomic_reads) {

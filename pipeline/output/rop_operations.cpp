@@ -78,7 +78,7 @@ std::uint32_t Rop::run_store(const Queued& queued) {
     }
     kbuffer_tiles_.mark_dirty(queued.entry[2]);
     if (plan_->shader.write_through) {
-        request(tile_address(Use::kbuffer, tile) + block % 4 * (tile_bytes(Use::kbuffer) / 4),
+        request(tile_address(Use::kbuffer, tile) + std::uint64_t{block % 4} * (tile_bytes(Use::kbuffer) / 4),
                 tile_bytes(Use::kbuffer) / 4, 0, MemoryClient::tile_write, true, pass_->draw_of(queued.task.quad));
         kbuffer_tiles_.mark_clean(queued.entry[2]);
         publish(tile);

@@ -24,7 +24,7 @@ int fail(const std::string& message, char* error, std::size_t size) {
     return 1;
 }
 
-OIIO::ImageSpec spec_of(const RopsimImageShape& shape, OIIO::TypeDesc type) {
+OIIO::ImageSpec spec_of(const RopsimImageShape& shape, const OIIO::TypeDesc& type) {
     OIIO::ImageSpec spec(static_cast<int>(shape.width), static_cast<int>(shape.height),
                          static_cast<int>(shape.channels), type);
     for (std::uint32_t channel = 0; channel < shape.channels; ++channel)

@@ -1,7 +1,7 @@
 // Index fetch, primitive counter and vertex fetch between a source, a memory and a sink.
 #include "pipeline/geometry/index_fetch.hpp"
 #include "pipeline/geometry/vertex_fetch.hpp"
-#include "tests/support/geometry_scene.hpp"
+#include "tests/support/index_fetch_kit.hpp"
 #include "tests/support/sim_kit.hpp"
 
 #include <set>
@@ -11,55 +11,19 @@ namespace {
 using namespace pipeline;
 using sim::Cycle;
 using Cycles = std::vector<Cycle>;
+using tests::answer;
+using tests::commands;
+using tests::counting;
+using tests::fetch;
+using tests::FetchRun;
+using tests::memory_latency;
+using tests::pass_of;
 using tests::Rig;
 using tests::Sink;
 using tests::Source;
 using Memory = tests::Responder<MemoryRequest, MemoryResponse>;
 
-constexpr Cycle memory_latency = 100;
-
-MemoryResponse answer(const MemoryRequest& request) { return {request.tag}; }
-
-GeometryPass pass_of(const tests::GeometryScene& scene) {
-    return {1, &scene.stream, scene.frame.resources.get(), scene.frame.draws, scene.stream.draws};
-}
-
-std::vector<DrawCommand> commands(const tests::GeometryScene& scene) {
-    std::vector<DrawCommand> list;
-    for (std::uint32_t i = 0; i < scene.stream.draws.size(); ++i) list.push_back({i});
-    return list;
-}
-
-std::vector<std::uint32_t> counting(std::uint32_t count) {
-    std::vector<std::uint32_t> list(count);
-    for (std::uint32_t i = 0; i < count; ++i) list[i] = i;
-    return list;
-}
-
 // ---- index fetch
-
-struct FetchRun {
-    std::vector<IndexedPrimitive> primitives;
-    Cycles cycles;
-    std::vector<MemoryRequest> requests;
-    IndexFetchStats stats;
-};
-
-FetchRun fetch(const tests::GeometryScene& scene, const IndexFetchParams& params, tests::SinkOptions sink_options = {},
-               sim::Mode mode = sim::Mode::normal, std::uint64_t shuffle = 1) {
-    const GeometryPass pass = pass_of(scene);
-    Rig rig(mode, 1, shuffle);
-    IndexFetch stage(rig.context("fetch"), params, pass);
-    Memory memory(rig.context("memory"), memory_latency, answer);
-    Source<DrawCommand> source(rig.context("source"), commands(scene));
-    Sink<IndexedPrimitive> sink(rig.context("sink"), std::move(sink_options));
-    sim::connect(source.out, stage.draws_in, {});
-    sim::connect(stage.requests_out, memory.requests_in, {});
-    sim::connect(memory.responses_out, stage.responses_in, {});
-    sim::connect(stage.primitives_out, sink.in, {.width = params.primitives_per_clk});
-    rig.simulation.run();
-    return {sink.values(), sink.cycles(), memory.requests(), stage.stats()};
-}
 
 TEST(IndexFetch, FirstTriangleComesOneMemoryLatencyAfterItsDraw) {
     const FetchRun run = fetch(tests::make_scene(tests::grid_mesh(1, 1)), {});
@@ -176,6 +140,7 @@ TEST(IndexFetch, SameInAllModes) {
          .index_type = IndexType::u16,
          .vertex_count = 90,
          .indices = counting(90)},
+        tests::restarted(Topology::triangle_strip, IndexType::u8, {~0U, 1, 2, 3, 4, ~0U, ~0U, 5, 6, 7, ~0U, 8}),
     });
     tests::expect_same_in_all_modes([&](std::uint64_t, sim::Mode mode, std::uint64_t shuffle) {
         return fetch(scene, {.lines_in_flight = 3, .bytes_per_clk = 7.3}, {.every = 2}, mode, shuffle).cycles;
@@ -270,6 +235,46 @@ TEST(VertexFetch, AttributesThatNobodyReadsCostNothing) {
     EXPECT_EQ(bytes_with({.texcoords = true}), 320U * 20);
     EXPECT_EQ(bytes_with({.normals = true, .texcoords = true}), 320U * 32);
     EXPECT_EQ(bytes_with({.vertex_colours = true}), 320U * 12); // the mesh has none
+    // A vertex shader reads what shading does not need.
+    EXPECT_EQ(bytes_with({.attributes = mask_of(Semantic::normal)}), 320U * 24);
+    EXPECT_EQ(bytes_with({.attributes = mask_of(Semantic::texcoord0)}), 320U * 20);
+    EXPECT_EQ(bytes_with({.attributes = mask_of(Semantic::texcoord1)}), 320U * 12);
+    EXPECT_EQ(bytes_with({.texcoords = true, .attributes = ~0U}), 320U * 32);
+}
+
+// One attribute of `bytes` bytes at any stride and offset.
+tests::GeometryScene strided_scene(std::uint32_t count, std::uint32_t bytes, std::uint32_t stride,
+                                   std::uint64_t offset) {
+    tests::GeometryScene scene = vertex_scene(count, 12);
+    Resources resources = *scene.frame.resources;
+    resources.buffers[0].bytes.resize(offset + std::uint64_t{stride} * count + bytes);
+    resources.geometries[0].attributes = {{.type = ComponentType::u8,
+                                           .components = static_cast<std::uint8_t>(bytes),
+                                           .offset = offset,
+                                           .stride = stride}};
+    resources.place();
+    resources.validate("strides");
+    scene.frame.resources = std::make_shared<const Resources>(std::move(resources));
+    return scene;
+}
+
+TEST(VertexFetch, StridesOf1To2048BytesFetchTheLinesOfTheirAddresses) {
+    constexpr std::uint32_t count = 20;
+    for (std::uint32_t stride = 1; stride <= 2048; ++stride) {
+        const std::uint32_t bytes = std::min(4U, stride);
+        const std::uint64_t offset = stride % 37;
+        const tests::GeometryScene scene = strided_scene(count, bytes, stride, offset);
+        std::set<std::uint64_t> expected;
+        for (std::uint64_t i = 0; i < count; ++i)
+            for (std::uint64_t byte = 0; byte < bytes; ++byte) expected.insert((offset + i * stride + byte) / 32 * 32);
+        VertexFetchParams params;
+        params.cache.bytes = 1U << 20U;
+        const VertexRun run = fetch_vertices(scene, counting(count), params);
+        std::set<std::uint64_t> found;
+        for (const MemoryRequest& request : run.requests) found.insert(request.address);
+        ASSERT_EQ(found, expected) << stride;
+        ASSERT_EQ(run.requests.size(), expected.size()) << stride;
+    }
 }
 
 TEST(VertexFetch, LineSharedByAttributesOfOneVertexIsLookedUpOnce) {

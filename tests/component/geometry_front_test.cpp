@@ -93,7 +93,9 @@ TEST(GeometryFront, TimedCountsEqualTheModelsWithoutTime) {
         {.entries = 24},
         {.model = ReuseModel::batch, .entries = 32, .warp_vertices = 32},
         {.model = ReuseModel::batch, .entries = 14, .warp_vertices = 64, .group_triangles = 128},
-        {.model = ReuseModel::mesa}};
+        {.model = ReuseModel::mesa},
+        {.model = ReuseModel::lru, .entries = 3},
+        {.model = ReuseModel::lru, .entries = 24}};
     for (const tests::IndexedMesh& mesh : meshes)
         for (const VertexReuseParams& model : models) {
             const GeometryScene scene = tests::make_scene(mesh);

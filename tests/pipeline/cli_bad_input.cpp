@@ -35,14 +35,15 @@ TEST_P(CliBadInput, IsOneLineAndTheRightStatus) { expect_one_line(run_program(Ge
 
 INSTANTIATE_TEST_SUITE_P(
     Arguments, CliBadInput,
-    ::testing::Values(Mistake{{}, 2, "expected a subcommand: compare, run, describe"},
-                      Mistake{{"compar"}, 2, "did you mean 'compare'?"}, Mistake{{"compare"}, 2, "scene is required"},
-                      Mistake{{"compare", "gen:stack", "--desings", "x"}, 2, "did you mean '--designs'?"},
-                      Mistake{{"compare", "gen:stack", "more"}, 2, "unexpected argument 'more'"},
-                      Mistake{{"compare", "gen:stack", "--size"}, 2, "--size"},
-                      Mistake{{"run", "gen:stack", "--timeline"}, 2, "--timeline requires --out"},
-                      Mistake{{"run", "gen:stack", "--designs", "blender"}, 2, "did you mean '--design'?"},
-                      Mistake{{"describe", "scorebord"}, 1, "did you mean 'scoreboard'?"}));
+    ::testing::Values(
+        Mistake{{}, 2, "expected a subcommand: compare, run, geometry, validate, calibrate, study, describe"},
+        Mistake{{"compar"}, 2, "did you mean 'compare'?"}, Mistake{{"compare"}, 2, "scene is required"},
+        Mistake{{"compare", "gen:stack", "--desings", "x"}, 2, "did you mean '--designs'?"},
+        Mistake{{"compare", "gen:stack", "more"}, 2, "unexpected argument 'more'"},
+        Mistake{{"compare", "gen:stack", "--size"}, 2, "--size"},
+        Mistake{{"run", "gen:stack", "--timeline"}, 2, "--timeline requires --out"},
+        Mistake{{"run", "gen:stack", "--designs", "blender"}, 2, "did you mean '--design'?"},
+        Mistake{{"describe", "scorebord"}, 1, "did you mean 'scoreboard'?"}));
 
 INSTANTIATE_TEST_SUITE_P(
     Values, CliBadInput,
@@ -68,6 +69,25 @@ INSTANTIATE_TEST_SUITE_P(
                       Mistake{compare_with("--camera", "7"), 1, "camera '7'"},
                       Mistake{compare_with("--camera", "1,2,3"), 1, "ex,ey,ez,tx,ty,tz,fovy"},
                       Mistake{{"compare", "gen:stak"}, 1, "did you mean 'stack'?"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    GeometryFeed, CliBadInput,
+    ::testing::Values(
+        Mistake{{"geometry", "gen:stack", "--prepare", "reordr"}, 1, "did you mean 'reorder'?"},
+        Mistake{{"geometry", "gen:stack", "--prepare", "batch?vertices=2"}, 1, "vertices: expected 0 or at least 3"},
+        Mistake{{"geometry", "gen:stack", "--submission", "bufers"}, 1, "did you mean 'buffers'?"},
+        Mistake{{"geometry", "gen:stack", "--fidelity", "exact"}, 1, "--fidelity: expected one of estimate, detailed"},
+        Mistake{{"geometry", "gen:stack", "--reads", "some"}, 1, "--reads: expected all or position"},
+        Mistake{{"geometry", "gen:stack", "--export", "x.glb"}, 1, "--export: expected a --prepare"},
+        Mistake{{"geometry", "gen:grass?blades=10", "--prepare", "batch", "--export", "/no/such/x.glb"}, 1, "/no/such"},
+        Mistake{{"geometry", "gen:grass?index=u16"}, 1, "at most 65536 vertices in a draw"},
+        Mistake{{"geometry", "gen:grass?attributes=normal:5f32"}, 1, "1 to 4 components"},
+        Mistake{{"geometry"}, 2, "scene is required"},
+        Mistake{{"validate", "geometri"}, 1, "expected geometry, got 'geometri'"},
+        Mistake{{"validate", "geometry", "--gpus", "g80"}, 1, "'g80' was not measured"},
+        Mistake{{"calibrate", "geometry", "--write", "/no/such"}, 1, "--write: /no/such"},
+        Mistake{{"study", "batchin"}, 1, "did you mean 'batching'?"},
+        Mistake{{"study", "/no/such.toml"}, 1, "/no/such.toml: cannot be read"}));
 
 // A triangle as glTF, so that one thing at a time can be made wrong.
 std::string triangle(const std::string& buffer, int index_count, int largest_count, const std::string& length) {

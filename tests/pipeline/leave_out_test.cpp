@@ -41,6 +41,10 @@ std::vector<Expectation> expectations() {
         {"gen:quads?n=3", {16, 16}, {"index fetch"}},
         {"gen:quads?n=3", {16, 16, "transparency", "auto", {"entry=z"}}, {"index fetch"}, true, false},
         {"gen:blob?triangles=500", {16, 16}, {"index fetch"}},
+        {"gen:blob?triangles=500",
+         {16, 16, "geometry"},
+         {"index fetch", "depth tile cache", "colour tile cache"},
+         false},
         {"gen:stack?n=3", {16, 16, "opaque"}, {"depth tile cache", "colour tile cache"}, false},
         {"gen:blob?triangles=500", {16, 16, "opaque"}, {"index fetch", "depth tile cache", "colour tile cache"}, false},
     };
@@ -115,6 +119,19 @@ TEST(LeaveOut, ReasonsAreTrueOfTheFrame) {
               "the design does not modify pixels in the ROP");
     EXPECT_EQ(reason_for(layers.run("existing"), "index fetch"), "no draw is indexed");
     EXPECT_EQ(reason_for(layers.run("blender"), "texture path to memory"), "no texture and no peeled layer is read");
+}
+
+TEST(LeaveOut, AttributesThatNoPassReadsCostNoMemoryTraffic) {
+    const auto vertex_bytes = [](const Replay& replay) {
+        return support::counter(replay.run("existing").stages, "vertex_fetch/counters/bytes");
+    };
+    const Replay all("gen:grass?blades=2000", {64, 64, "geometry"});
+    const Replay positions("gen:grass?blades=2000", {64, 64, "geometry", "auto", {"reads=position"}});
+    EXPECT_EQ(vertex_bytes(positions), 14000U * 12);
+    EXPECT_EQ(vertex_bytes(all), 14000U * 24);
+    EXPECT_EQ(reason_for(positions.run("existing"), "normals"), "fragments have the base colour of their material");
+    EXPECT_EQ(reason_for(all.run("existing"), "normals"), "(it is not left out)");
+    EXPECT_EQ(positions.run("existing").wrong_pixels, 0U);
 }
 
 TEST(LeaveOut, TexturesAndEarlyDepthAreBuiltForScenesThatNeedThem) {

@@ -35,6 +35,7 @@ pipeline::Geometry geometry_of(pipeline::Resources& resources, const SceneDraw& 
     geometry.vertex_count = draw.vertex_count;
     geometry.index_type = draw.index_type;
     geometry.index_count = static_cast<std::uint32_t>(draw.indices.size());
+    geometry.primitive_restart = draw.primitive_restart;
     const std::uint32_t vertices =
         add_buffer(resources, "vertices", std::vector<std::byte>(std::size_t{draw.vertex_count} * draw.vertex_bytes));
     constexpr std::array<std::pair<Semantic, std::uint8_t>, 3> layout{
@@ -128,6 +129,7 @@ GeometryScene make_scene(const std::vector<SceneDraw>& draws) {
     for (const SceneDraw& draw : draws) {
         const auto index = static_cast<std::uint32_t>(scene.frame.draws.size());
         resources.geometries.push_back(geometry_of(resources, draw));
+        resources.find_runs();
         pipeline::Draw frame_draw;
         frame_draw.name = "draw" + std::to_string(index);
         frame_draw.geometry = index;

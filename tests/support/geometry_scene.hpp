@@ -31,6 +31,7 @@ struct SceneDraw {
     std::uint32_t vertex_count = 0;
     std::vector<std::uint32_t> indices; ///< or as many entries as there are vertices to draw, when not indexed
     std::uint32_t instances = 1;
+    bool primitive_restart = false;
     std::uint32_t vertex_bytes = 12; ///< of the interleaved vertex: position, then normal, then texcoords
 };
 

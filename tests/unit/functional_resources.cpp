@@ -60,9 +60,29 @@ TEST(Resources, ValidateNamesWhatIsWrong) {
     expect_refused("to be 1 to", [](Resources& r) { r.textures[0].levels[0].width = 0; });
     expect_refused("base texture", [](Resources& r) { r.materials[0].base_texture = 1; });
     expect_refused("base texture", [](Resources& r) { r.materials[0].base_texture = -2; });
-    expect_refused("texture coordinates 0 or 1", [](Resources& r) { r.materials[0].texcoord = 2; });
+    expect_refused("texture coordinates 0 to 7", [](Resources& r) { r.materials[0].texcoord = 8; });
     expect_refused("finite",
                    [](Resources& r) { r.materials[0].base_colour.g = std::numeric_limits<float>::infinity(); });
+}
+
+TEST(Resources, PackedAttributesHaveFourComponentsInFourBytes) {
+    const auto packed = [](Resources& r) -> VertexAttribute& {
+        VertexAttribute& attribute = r.geometries[0].attributes[0];
+        attribute.type = ComponentType::s10_10_10_2;
+        attribute.components = 4;
+        attribute.stride = 4;
+        return attribute;
+    };
+    Resources resources = good_resources();
+    packed(resources);
+    EXPECT_NO_THROW(resources.validate("box.glb"));
+    EXPECT_EQ(resources.geometries[0].attributes[0].bytes(), 4U);
+    expect_refused("4 components of s10_10_10_2 in position, not 3", [&](Resources& r) { packed(r).components = 3; });
+    expect_refused("stride of at least 4 bytes in position, not 3", [&](Resources& r) { packed(r).stride = 3; });
+    expect_refused("a known component type, not 9",
+                   [&](Resources& r) { packed(r).type = static_cast<ComponentType>(9); });
+    expect_refused("a known semantic, not 13",
+                   [](Resources& r) { r.geometries[0].attributes[1].semantic = static_cast<Semantic>(13); });
 }
 
 TEST(Resources, LengthsThatOverflowAreRefused) {

@@ -289,6 +289,28 @@ TEST(Shading, TexcoordTransformOfTheMaterialIsApplied) {
     EXPECT_EQ(scene.rasterize().colours.at(0)[0], glm::vec4(0, 1, 0, 1));
 }
 
+TEST(Shading, FlatColoursAreThoseOfTheMaterialWhateverTheGeometryHas) {
+    FunctionalScene scene(8, 8);
+    tests::MeshData mesh = tests::rectangle(0, 0, 8, 8);
+    mesh.normals.assign(4, {1, 0, 0}); // seen edge-on
+    mesh.colours.assign(4, {0.5F, 0.5F, 0.5F, 0.1F});
+    Material material;
+    material.double_sided = true;
+    material.base_colour = {0.25F, 0.5F, 0.75F, 1.0F};
+    material.alpha_mode = AlphaMode::mask;
+    material.base_texture = static_cast<std::int32_t>(scene.add_texture(tests::texture_of_one_colour(1, 1, 0)));
+    scene.add(mesh, scene.add_material(material));
+    FrontEndOptions options;
+    options.flat_colours = true;
+    const FragmentStream stream = scene.rasterize(options);
+    EXPECT_EQ(stream.fragments, 64U);
+    EXPECT_EQ(stream.fragments_discarded, 0U);
+    for_each_covered(stream, [&](unsigned, unsigned, std::size_t quad, std::size_t lane) {
+        EXPECT_EQ(stream.colours[quad][lane], material.base_colour);
+    });
+    EXPECT_EQ(scene.rasterize().fragments_discarded, 64U); // the alpha of the others is 0
+}
+
 TEST(ShaderCost, GrowsWithWhatTheShaderUses) {
     Needs needs;
     needs.colours = needs.textures = needs.normals = needs.vertex_colours = needs.alpha_test = true;
@@ -319,6 +341,8 @@ TEST(ShaderCost, GrowsWithWhatTheShaderUses) {
     EXPECT_EQ(cost(textured, full).registers, 5U);
     needs = Needs{};
     EXPECT_EQ(cost(textured, full).alu, 1U); // depth only
+    needs.colours = needs.flat_colours = true;
+    EXPECT_EQ(cost(textured, full).alu, 1U);
     EXPECT_EQ(cost(textured, full).textures, 0U);
 }
 

@@ -1,11 +1,14 @@
 // Attribute and index fetch, primitive assembly, the vertex transform.
 #include "pipeline/functional/vertex_fetch.hpp"
 #include "pipeline/functional/vertex_transform.hpp"
+#include "sim/check.hpp"
 #include "tests/support/functional_scene.hpp"
 
 #include <cmath>
+#include <functional>
 #include <gtest/gtest.h>
 #include <limits>
+#include <rapidcheck/gtest.h>
 
 namespace pipeline {
 namespace {
@@ -40,6 +43,41 @@ TEST(AttributeFetch, NormalizedIntegersSpanTheUnitRange) {
     EXPECT_EQ(fetch<std::int16_t>(ComponentType::s16, 3, true, {-32768, -32767, 32767}, 6), glm::vec4(-1, -1, 1, 1));
     EXPECT_EQ(fetch<std::uint16_t>(ComponentType::u16, 2, true, {0, 65535}, 4), glm::vec4(0, 1, 0, 1));
     EXPECT_EQ(fetch<std::uint32_t>(ComponentType::u32, 2, true, {0, 4294967295U}, 8), glm::vec4(0, 1, 0, 1));
+}
+
+// x in the low bits: 2_10_10_10_REV of OpenGL 4.5, section 10.3.8.
+constexpr std::uint32_t word_of(std::uint32_t x, std::uint32_t y, std::uint32_t z, std::uint32_t w) {
+    return x | y << 10U | z << 20U | w << 30U;
+}
+
+TEST(AttributeFetch, PackedTenBitIntegersAreTakenByValue) {
+    using Words = std::vector<std::uint32_t>;
+    const Words words{word_of(0x3FF, 0x1FF, 0x200, 2), word_of(1, 2, 3, 1)};
+    EXPECT_EQ(fetch(ComponentType::s10_10_10_2, 4, false, words, 4), glm::vec4(-1, 511, -512, -2));
+    EXPECT_EQ(fetch(ComponentType::u10_10_10_2, 4, false, words, 4), glm::vec4(1023, 511, 512, 2));
+    EXPECT_EQ(fetch(ComponentType::s10_10_10_2, 4, false, words, 4, 0, 1), glm::vec4(1, 2, 3, 1));
+    EXPECT_EQ(fetch(ComponentType::u10_10_10_2, 4, false, Words{word_of(0, 0, 0, 3)}, 4), glm::vec4(0, 0, 0, 3));
+}
+
+TEST(AttributeFetch, PackedTenBitIntegersSpanTheUnitRange) {
+    using Words = std::vector<std::uint32_t>;
+    EXPECT_EQ(fetch(ComponentType::s10_10_10_2, 4, true, Words{word_of(0x200, 0x201, 0x1FF, 1)}, 4),
+              glm::vec4(-1, -1, 1, 1));
+    EXPECT_EQ(fetch(ComponentType::s10_10_10_2, 4, true, Words{word_of(0, 73, 0, 2)}, 4),
+              glm::vec4(0, 1.0F / 7.0F, 0, -1)); // 73 * 7 = 511; w has the values -2, -1, 0, 1
+    EXPECT_EQ(fetch(ComponentType::u10_10_10_2, 4, true, Words{word_of(0, 1023, 341, 1)}, 4),
+              glm::vec4(0, 1, 1.0F / 3.0F, 1.0F / 3.0F));
+}
+
+TEST(AttributeFetch, SlotsOfSemantics) {
+    EXPECT_EQ(slot_of(Semantic::position), Slot::position);
+    EXPECT_EQ(slot_of(Semantic::normal), Slot::normal);
+    EXPECT_EQ(slot_of(Semantic::colour), Slot::colour);
+    EXPECT_EQ(slot_of(Semantic::secondary_colour), Slot::colour);
+    for (std::uint32_t set = 0; set < texcoord_sets; ++set) EXPECT_EQ(slot_of(texcoord(set)), Slot::texcoord);
+    EXPECT_EQ(slot_of(Semantic::generic), Slot::generic);
+    EXPECT_EQ(sim::enum_name(Semantic::texcoord7), "texcoord7");
+    EXPECT_EQ(sim::enum_name(last_component_type), "u10_10_10_2");
 }
 
 TEST(AttributeFetch, HalfFloats) {
@@ -87,6 +125,114 @@ TEST(PrimitiveAssembly, StripsAndFansKeepTheirWinding) {
     geometry.index_count = 2;
     geometry.topology = Topology::triangle_strip;
     EXPECT_EQ(geometry.triangle_count(), 0U);
+}
+
+/// Indices of 16 bits; 0xFFFF restarts.
+struct RestartedGeometry {
+    Resources resources;
+
+    RestartedGeometry(Topology topology, const std::vector<std::uint16_t>& indices) {
+        resources.buffers = {tests::buffer_of(indices), tests::buffer_of(std::vector<float>(300))};
+        Geometry geometry;
+        geometry.topology = topology;
+        geometry.attributes = {{.buffer = 1}};
+        geometry.vertex_count = 100;
+        geometry.index_type = IndexType::u16;
+        geometry.index_count = static_cast<std::uint32_t>(indices.size());
+        geometry.primitive_restart = true;
+        resources.geometries = {geometry};
+        resources.find_runs();
+    }
+    Geometry& geometry() { return resources.geometries[0]; }
+    std::vector<std::array<std::uint32_t, 3>> triangles() {
+        std::vector<std::array<std::uint32_t, 3>> list;
+        const PrimitiveReader read(resources, geometry());
+        for (std::uint32_t i = 0; i < geometry().triangle_count(); ++i) list.push_back(read(i));
+        return list;
+    }
+};
+
+using Triangles = std::vector<std::array<std::uint32_t, 3>>;
+
+TEST(PrimitiveRestart, EndsStripsFansAndBegunTriangles) {
+    const std::vector<std::uint16_t> indices{0, 1, 2, 3, 0xFFFF, 4, 5, 6, 7, 8};
+    EXPECT_EQ(RestartedGeometry(Topology::triangle_strip, indices).triangles(),
+              (Triangles{{0, 1, 2}, {1, 3, 2}, {4, 5, 6}, {5, 7, 6}, {6, 7, 8}}));
+    EXPECT_EQ(RestartedGeometry(Topology::triangle_fan, indices).triangles(),
+              (Triangles{{1, 2, 0}, {2, 3, 0}, {5, 6, 4}, {6, 7, 4}, {7, 8, 4}}));
+    EXPECT_EQ(RestartedGeometry(Topology::triangles, indices).triangles(), (Triangles{{0, 1, 2}, {4, 5, 6}}));
+}
+
+TEST(PrimitiveRestart, RunsWithoutTrianglesLeaveNoTrace) {
+    RestartedGeometry odd(Topology::triangle_strip,
+                          {0xFFFF, 0xFFFF, 9, 0xFFFF, 8, 7, 0xFFFF, 1, 2, 3, 0xFFFF, 4, 5, 6, 0xFFFF, 0xFFFF});
+    EXPECT_EQ(odd.triangles(), (Triangles{{1, 2, 3}, {4, 5, 6}}));
+    EXPECT_EQ(odd.geometry().runs, (std::vector<IndexRun>{{7, 0}, {11, 1}, {16, 2}}));
+    EXPECT_NO_THROW(odd.resources.validate("odd"));
+    EXPECT_EQ(used_vertices(odd.resources, odd.geometry()).first, 1U);
+    EXPECT_EQ(used_vertices(odd.resources, odd.geometry()).end, 10U);
+    RestartedGeometry nothing(Topology::triangle_strip, {0xFFFF, 0xFFFF});
+    EXPECT_EQ(nothing.geometry().triangle_count(), 0U);
+    EXPECT_EQ(used_vertices(nothing.resources, nothing.geometry()).end, 0U);
+    RestartedGeometry empty(Topology::triangle_fan, {});
+    EXPECT_EQ(empty.geometry().triangle_count(), 0U);
+}
+
+TEST(PrimitiveRestart, ValidateRefusesWhatDoesNotFit) {
+    const auto error = [](const std::function<void(RestartedGeometry&)>& spoil) -> std::string {
+        RestartedGeometry geometry(Topology::triangle_strip, {0, 1, 2, 0xFFFF, 3, 4, 5});
+        spoil(geometry);
+        try {
+            geometry.resources.validate("strips");
+        } catch (const sim::InputError& refused) {
+            return refused.what();
+        }
+        return "";
+    };
+    EXPECT_EQ(error([](RestartedGeometry&) {}), "");
+    EXPECT_EQ(error([](RestartedGeometry& g) { g.geometry().runs.clear(); }),
+              "strips: geometry 0: expected the runs between the restarts of its indices");
+    EXPECT_EQ(error([](RestartedGeometry& g) { g.geometry().primitive_restart = false; }),
+              "strips: geometry 0: expected index 3 below the vertex count 100, not 65535");
+    EXPECT_EQ(error([](RestartedGeometry& g) {
+                  g.geometry().index_count = 3;
+                  g.geometry().primitive_restart = false;
+              }),
+              "strips: geometry 0: expected no runs of indices without primitive restart");
+    EXPECT_EQ(error([](RestartedGeometry& g) {
+                  g.geometry().index_type = IndexType::none;
+                  g.resources.find_runs();
+              }),
+              "strips: geometry 0: expected indices where primitives are restarted");
+    EXPECT_NE(error([](RestartedGeometry& g) {
+                  g.geometry().index_count = 4'000'000'000;
+                  g.resources.find_runs();
+              }).find("4000000000 indices of 2 bytes"),
+              std::string::npos);
+}
+
+// Strips cut out of one index buffer equal as many draws of one strip each.
+RC_GTEST_PROP(PrimitiveRestart, EqualsSeparateStrips, ()) {
+    const auto lengths = *rc::gen::container<std::vector<std::uint32_t>>(rc::gen::inRange(0U, 9U));
+    const auto topology = *rc::gen::element(Topology::triangle_strip, Topology::triangle_fan, Topology::triangles);
+    std::vector<std::uint16_t> indices;
+    Triangles expected;
+    std::uint16_t vertex = 0;
+    for (const std::uint32_t length : lengths) {
+        std::vector<std::uint16_t> strip;
+        for (std::uint32_t i = 0; i < length; ++i) strip.push_back(static_cast<std::uint16_t>(vertex++ % 100));
+        Resources alone;
+        alone.buffers = {tests::buffer_of(strip)};
+        Geometry geometry;
+        geometry.topology = topology;
+        geometry.index_type = IndexType::u16;
+        geometry.index_count = length;
+        const PrimitiveReader read(alone, geometry);
+        for (std::uint32_t i = 0; i < geometry.triangle_count(); ++i) expected.push_back(read(i));
+        indices.insert(indices.end(), strip.begin(), strip.end());
+        indices.push_back(0xFFFF);
+    }
+    RC_ASSERT(RestartedGeometry(topology, indices).triangles() == expected);
 }
 
 TEST(UsedVertices, AreTheRangeOfTheIndices) {

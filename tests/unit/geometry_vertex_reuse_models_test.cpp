@@ -10,6 +10,7 @@
 namespace {
 
 using pipeline::FifoReuse;
+using pipeline::LruReuse;
 using pipeline::MesaReuse;
 using pipeline::ReuseModel;
 using pipeline::VertexReuseModel;
@@ -91,6 +92,79 @@ RC_GTEST_PROP(VertexReuseModels, FifoEqualsAQueueOfVertices, ()) {
     RC_ASSERT(fifo.runs() == runs);
 }
 
+std::uint32_t lru_runs(const IndexedMesh& mesh, std::uint32_t entries) {
+    LruReuse lru(entries);
+    lru.begin_draw(mesh.vertex_count);
+    return runs_of(lru, mesh);
+}
+
+TEST(VertexReuseModels, LruRenewsOnAHitAndForgetsTheVertexUsedLongestAgo) {
+    LruReuse lru(3);
+    lru.begin_draw(10);
+    EXPECT_EQ(lru.triangle({0, 1, 2}).missed, 0b111);
+    const auto second = lru.triangle({0, 3, 0}); // 3 pushes 1 out, because 0 has just been used
+    EXPECT_EQ(second.missed, 0b010);
+    EXPECT_EQ(second.sequences, (std::array<std::uint32_t, 3>{1, 4, 1}));
+    EXPECT_EQ(lru.triangle({2, 0, 3}).missed, 0);
+    EXPECT_EQ(lru.triangle({1, 0, 3}).missed, 0b001); // pushes 2 out
+    EXPECT_EQ(lru.triangle({2, 2, 2}).missed, 0b001); // pushes 1 out
+    EXPECT_EQ(lru.runs(), 6U);
+}
+
+TEST(VertexReuseModels, LruKeepsTheCentreOfAFanThatAFifoLoses) {
+    IndexedMesh fan{"fan", 102, {}};
+    for (std::uint32_t i = 0; i < 100; ++i) fan.indices.insert(fan.indices.end(), {i + 1, i + 2, 0});
+    EXPECT_EQ(lru_runs(fan, 3), 102U);
+    // A FIFO of 4 loses the centre with every fourth vertex that follows it.
+    EXPECT_GT(fifo_runs(fan, 4), 102U + 20U);
+    EXPECT_EQ(lru_runs(tests::grass_mesh(100), 3), 700U);
+}
+
+RC_GTEST_PROP(VertexReuseModels, LruEqualsAListSortedByTimeOfUse, ()) {
+    const auto entries = *rc::gen::inRange(3U, 20U);
+    const auto draws = *rc::gen::container<std::vector<std::vector<std::uint32_t>>>(
+        rc::gen::container<std::vector<std::uint32_t>>(rc::gen::inRange(0U, 30U)));
+    LruReuse lru(entries);
+    std::uint32_t runs = 0;
+    for (const auto& vertices : draws) {
+        lru.begin_draw(30);
+        std::vector<std::pair<std::uint32_t, std::uint32_t>> list; // vertex, run; used longest ago first
+        for (std::size_t i = 0; i + 2 < vertices.size(); i += 3) {
+            const auto result = lru.triangle({vertices[i], vertices[i + 1], vertices[i + 2]});
+            for (std::size_t corner = 0; corner < 3; ++corner) {
+                const auto is_it = [&](const auto& entry) { return entry.first == vertices[i + corner]; };
+                const auto place = std::find_if(list.begin(), list.end(), is_it);
+                RC_ASSERT((result.missed >> corner & 1) == (place == list.end() ? 1 : 0));
+                auto entry = std::make_pair(vertices[i + corner], runs + 1);
+                if (place == list.end()) {
+                    ++runs;
+                    if (list.size() == entries) list.erase(list.begin());
+                } else {
+                    entry = *place;
+                    list.erase(place);
+                }
+                list.push_back(entry);
+                RC_ASSERT(result.sequences[corner] == entry.second);
+            }
+        }
+    }
+    RC_ASSERT(lru.runs() == runs);
+}
+
+TEST(VertexReuseModels, BatchesOf32And96And384IndicesShadeEachOfTheirVerticesOnce) {
+    // Triangles that all share one vertex, the two others new: 1 + 2n vertices in n triangles.
+    IndexedMesh star{"star", 2401, {}};
+    for (std::uint32_t i = 0; i < 1200; ++i) star.indices.insert(star.indices.end(), {0, 2 * i + 1, 2 * i + 2});
+    for (const std::uint32_t indices : {32U, 96U, 384U}) {
+        const std::uint32_t triangles = indices / 3;
+        VertexReuseModel batch(
+            {.model = ReuseModel::batch, .entries = 1U << 20U, .warp_vertices = 0, .group_triangles = triangles});
+        batch.begin_draw(star.vertex_count, true);
+        const std::uint32_t batches = (1200 + triangles - 1) / triangles;
+        EXPECT_EQ(runs_of(batch, star), 2400 + batches) << indices;
+    }
+}
+
 TEST(VertexReuseModels, WarpIsFlushedWhenATriangleDoesNotFit) {
     FifoReuse warp(1000, 4, 0);
     warp.begin_draw(10);
@@ -108,7 +182,7 @@ TEST(VertexReuseModels, GroupIsFlushedWhenItsTrianglesAreUsedUp) {
 }
 
 TEST(VertexReuseModels, EveryInstanceBeginsEmptyWithRunningSequenceNumbers) {
-    for (const ReuseModel kind : {ReuseModel::fifo, ReuseModel::batch, ReuseModel::mesa}) {
+    for (const ReuseModel kind : {ReuseModel::fifo, ReuseModel::batch, ReuseModel::mesa, ReuseModel::lru}) {
         VertexReuseModel model({.model = kind});
         model.begin_draw(3, true);
         EXPECT_EQ(model.triangle({0, 1, 2}).sequences, (std::array<std::uint32_t, 3>{1, 2, 3}));

@@ -118,6 +118,29 @@ TEST(GltfImport, SparseElementsReplaceThoseOfTheBase) {
     EXPECT_EQ(position_at(scene, 0, 2), glm::vec3(0));
 }
 
+TEST(GltfImport, SparseIndicesAreOverlaid) {
+    GltfFile file = triangle_file();
+    const std::vector<std::uint16_t> base{0, 0, 0};
+    const int indices = file.add_integers(base, "SCALAR", 5123);
+    file.json["meshes"][0]["primitives"][0]["indices"] = indices;
+    const std::vector<std::uint8_t> targets{1, 2};
+    const std::vector<std::uint16_t> values{2, 1};
+    const int places = file.add_view({reinterpret_cast<const char*>(targets.data()), 2});
+    const int changed = file.add_view({reinterpret_cast<const char*>(values.data()), 4});
+    auto& accessor = file.json["accessors"][static_cast<std::size_t>(indices)];
+    accessor["sparse"] = {{"count", 2},
+                          {"indices", {{"bufferView", places}, {"componentType", 5121}}},
+                          {"values", {{"bufferView", changed}}}};
+    const auto triangle = [](const Scene& scene) {
+        return pipeline::PrimitiveReader(*scene.resources, only_geometry(scene))(0);
+    };
+    const Scene scene = file.load();
+    EXPECT_EQ(only_geometry(scene).index_type, pipeline::IndexType::u32);
+    EXPECT_EQ(triangle(scene), (std::array<std::uint32_t, 3>{0, 2, 1}));
+    accessor["normalized"] = true;
+    EXPECT_NE(file.error().find("indices: expected unsigned integers"), std::string::npos) << file.error();
+}
+
 TEST(GltfImport, QuantisedPositionsStayQuantised) {
     GltfFile file = triangle_file();
     file.json["extensionsRequired"] = {"KHR_mesh_quantization"};

@@ -187,6 +187,66 @@ TEST(Workloads, OpaqueIsOnePassWithDepth) {
     EXPECT_TRUE(frame.needs.depth && frame.needs.colour_surface && frame.needs.normals);
 }
 
+TEST(Workloads, GeometryIsOnePassOfDepthsThatReadsAllAttributesOrPositions) {
+    const Frame all = frame_with({}, "geometry");
+    EXPECT_EQ(pass_names(all), (Names{"clear", "geometry"}));
+    EXPECT_TRUE(all.passes[1].depth.test && all.passes[1].depth.write);
+    EXPECT_TRUE(all.passes[1].colour && !all.passes[1].kbuffer);
+    EXPECT_TRUE(all.needs.flat_colours && all.needs.colour_surface);
+    EXPECT_FALSE(all.needs.normals || all.needs.vertex_colours || all.needs.textures || all.needs.alpha_test);
+    EXPECT_EQ(all.needs.attributes, (1U << pipeline::semantics) - 1);
+    const Names list = left_out(all);
+    EXPECT_TRUE(std::none_of(list.begin(), list.end(), [](const auto& line) { return line.starts_with("normals"); }));
+
+    const Frame positions = frame_with({"reads=position", "depth_format=d32f"}, "geometry");
+    EXPECT_EQ(positions.needs.attributes, 0U);
+    EXPECT_EQ(positions.depth_format, pipeline::DepthFormat::d32f);
+    EXPECT_EQ(left_out(positions)[1], "normals: fragments have the base colour of their material");
+}
+
+// The geometry of one draw of three_draws() with an attribute of every semantic.
+Frame frame_of_every_attribute(const Names& settings, const std::string& workload) {
+    traces::Scene all = scene();
+    auto resources = std::make_shared<pipeline::Resources>(*all.resources);
+    for (std::uint32_t i = 0; i < pipeline::semantics; ++i) {
+        const auto semantic = static_cast<pipeline::Semantic>(i);
+        if (resources->geometries[0].find(semantic) != nullptr) continue;
+        pipeline::VertexAttribute attribute = *resources->geometries[0].find(pipeline::Semantic::position);
+        attribute.semantic = semantic;
+        resources->geometries[0].attributes.push_back(attribute);
+    }
+    all.resources = resources;
+    traces::WorkloadOptions options;
+    for (const std::string& setting : settings) options.set(setting);
+    return traces::build_frame(all, traces::make_view(all, "auto", 8, 8), workload, options);
+}
+
+TEST(Workloads, EveryAttributeThatNobodyReadsIsListed) {
+    const Frame positions = frame_of_every_attribute({"reads=position"}, "geometry");
+    Names units;
+    for (const auto& item : positions.left_out) units.push_back(item.unit);
+    const Names expected{"normals",
+                         "vertex colours",
+                         "texture coordinates",
+                         "secondary colours",
+                         "texture coordinates 1",
+                         "texture coordinates 2",
+                         "texture coordinates 3",
+                         "texture coordinates 4",
+                         "texture coordinates 5",
+                         "texture coordinates 6",
+                         "texture coordinates 7",
+                         "generic attributes"};
+    for (const std::string& unit : expected) EXPECT_EQ(std::count(units.begin(), units.end(), unit), 1) << unit;
+    EXPECT_EQ(std::count(units.begin(), units.end(), "texture coordinates 0"), 0); // that is "texture coordinates"
+
+    for (const auto& item : frame_of_every_attribute({}, "geometry").left_out)
+        EXPECT_EQ(std::count(expected.begin(), expected.end(), item.unit), 0) << item.unit;
+    // A lit picture reads normals and colours.
+    for (const auto& item : frame_of_every_attribute({}, "opaque").left_out)
+        EXPECT_TRUE(item.unit != "normals" && item.unit != "vertex colours");
+}
+
 TEST(Workloads, OptionsAreCheckedByName) {
     EXPECT_EQ(error_of({"k=65"}), "workload transparency: k: expected integer 1 to 64, got 65");
     EXPECT_EQ(error_of({"K=4"}), "workload transparency: unknown key 'K'");

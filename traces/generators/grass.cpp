@@ -16,14 +16,21 @@ struct GrassParams {
     std::uint32_t blades = 300'000;
     std::uint32_t blades_per_draw = 0;
     VertexLayout layout = VertexLayout::separate;
+    PositionFormat position = PositionFormat::f32;
+    std::string attributes = "normal:3f32";
+    IndexWidth index = IndexWidth::automatic;
+    std::uint32_t align = 4;
     std::uint64_t seed = 1;
 
     static constexpr auto fields() {
         using P = GrassParams;
-        return std::tuple(sim::field<&P::blades>("blades").range(1, 20'000'000),
-                          sim::field<&P::blades_per_draw>("blades drawn with one draw call; 0 = all").at_least(0),
-                          sim::field<&P::layout>("positions and normals in two buffers, or together"),
-                          sim::field<&P::seed>("of places and shapes"));
+        return std::tuple(
+            sim::field<&P::blades>("blades").range(1, 20'000'000),
+            sim::field<&P::blades_per_draw>("blades drawn with one draw call; 0 = all").at_least(0),
+            sim::field<&P::layout>(MeshFormatTexts::layout), sim::field<&P::position>(MeshFormatTexts::position),
+            sim::field<&P::attributes>(MeshFormatTexts::attributes), sim::field<&P::index>(MeshFormatTexts::index),
+            sim::field<&P::align>(MeshFormatTexts::align).unit("bytes").range(1, 4),
+            sim::field<&P::seed>("of places and shapes"));
     }
 };
 static_assert(sim::fully_described<GrassParams>);
@@ -80,6 +87,7 @@ Camera camera_on(double side) {
 }
 
 Scene build(const GrassParams& params) {
+    const MeshFormat format = format_of(params, "gen:grass");
     const auto columns = static_cast<std::uint32_t>(std::ceil(std::sqrt(static_cast<double>(params.blades))));
     const double side = columns / blades_per_metre;
     sim::Random random(params.seed, "grass");
@@ -96,9 +104,8 @@ Scene build(const GrassParams& params) {
     const std::uint32_t per_draw =
         params.blades_per_draw == 0 ? params.blades : std::min(params.blades_per_draw, params.blades);
     Scene scene = scene_of_material("grass", {0.12F, 0.35F, 0.05F, 1.0F});
-    const std::uint32_t draws = add_mesh_in_parts(*scene.resources, mesh, params.layout, per_draw * vertices_per_blade,
-                                                  per_draw * indices_per_blade);
-    for (std::uint32_t i = 0; i < draws; ++i) add_draw(scene, i);
+    const auto parts = equal_parts(mesh, per_draw * vertices_per_blade, per_draw * indices_per_blade);
+    add_draws(scene, mesh, parts, format, "gen:grass");
     scene.cameras.push_back(camera_on(side));
     return scene;
 }

@@ -56,9 +56,8 @@ Scene build(const GridSoupParams& params) {
     }
     const std::uint32_t per_draw = std::min(params.boxes_per_draw, params.boxes);
     Scene scene = scene_of_material("boxes", {0.6F, 0.6F, 0.65F, 1.0F});
-    const std::uint32_t draws = add_mesh_in_parts(*scene.resources, mesh, VertexLayout::separate,
-                                                  per_draw * vertices_per_box, per_draw * indices_per_box);
-    for (std::uint32_t i = 0; i < draws; ++i) add_draw(scene, i);
+    add_draws(scene, mesh, equal_parts(mesh, per_draw * vertices_per_box, per_draw * indices_per_box), {},
+              "gen:grid-soup");
     return scene;
 }
 

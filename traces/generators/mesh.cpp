@@ -1,127 +1,9 @@
 #include "traces/generators/mesh.hpp"
 
-#include "sim/check.hpp"
-
 #include <algorithm>
-#include <cstring>
-#include <fmt/format.h>
+#include <cmath>
 
 namespace traces {
-
-using pipeline::Buffer;
-using pipeline::ComponentType;
-using pipeline::Geometry;
-using pipeline::IndexType;
-using pipeline::Resources;
-using pipeline::Semantic;
-using pipeline::VertexAttribute;
-
-namespace {
-
-// One attribute of a mesh as bytes.
-struct Column {
-    Semantic semantic;
-    ComponentType type;
-    std::uint8_t components;
-    bool normalized;
-    const char* name;
-    const std::byte* data;
-
-    std::uint32_t size() const { return pipeline::bytes_of(type) * components; }
-};
-
-std::vector<Column> columns_of(const Mesh& mesh) {
-    const auto bytes = [](const auto& list) { return reinterpret_cast<const std::byte*>(list.data()); };
-    CHECK(mesh.normals.empty() || mesh.normals.size() == mesh.positions.size());
-    CHECK(mesh.colours.empty() || mesh.colours.size() == mesh.positions.size());
-    std::vector<Column> columns{{Semantic::position, ComponentType::f32, 3, false, "positions", bytes(mesh.positions)}};
-    if (!mesh.normals.empty())
-        columns.push_back({Semantic::normal, ComponentType::f32, 3, false, "normals", bytes(mesh.normals)});
-    if (!mesh.colours.empty())
-        columns.push_back({Semantic::colour, ComponentType::u8, 4, true, "colours", bytes(mesh.colours)});
-    return columns;
-}
-
-std::uint32_t add_buffer(Resources& resources, std::string name, std::size_t bytes) {
-    resources.buffers.push_back({std::move(name), std::vector<std::byte>(bytes), 0});
-    return static_cast<std::uint32_t>(resources.buffers.size() - 1);
-}
-
-std::vector<VertexAttribute> add_vertices(Resources& resources, const Mesh& mesh, VertexLayout layout) {
-    const std::vector<Column> columns = columns_of(mesh);
-    const std::size_t count = mesh.positions.size();
-    std::vector<VertexAttribute> attributes;
-    std::uint32_t together = 0;
-    for (const Column& column : columns) together += column.size();
-
-    std::uint32_t buffer = 0, offset = 0;
-    if (layout == VertexLayout::interleaved) buffer = add_buffer(resources, mesh.name + " vertices", count * together);
-    for (const Column& column : columns) {
-        const std::uint32_t size = column.size();
-        if (layout == VertexLayout::separate)
-            buffer = add_buffer(resources, fmt::format("{} {}", mesh.name, column.name), count * size);
-        const std::uint32_t stride = layout == VertexLayout::separate ? size : together;
-        std::byte* target = resources.buffers[buffer].bytes.data() + offset;
-        for (std::size_t i = 0; i < count; ++i) std::memcpy(target + i * stride, column.data + i * size, size);
-        attributes.push_back(
-            {column.semantic, column.type, column.components, column.normalized, buffer, offset, stride});
-        if (layout == VertexLayout::interleaved) offset += size;
-    }
-    return attributes;
-}
-
-// Indices of each part count from its first vertex, so that parts of up to 65,536 vertices get by with 16 bits.
-std::uint32_t add_indices(Resources& resources, const Mesh& mesh, IndexType type, std::uint32_t vertices_per_part,
-                          std::uint32_t indices_per_part) {
-    const std::uint32_t size = pipeline::bytes_of(type);
-    const std::uint32_t buffer = add_buffer(resources, mesh.name + " indices", mesh.indices.size() * size);
-    std::byte* target = resources.buffers[buffer].bytes.data();
-    for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
-        const auto first = static_cast<std::uint32_t>(i / indices_per_part * vertices_per_part);
-        const std::uint32_t index = mesh.indices[i] - first;
-        const auto narrow = static_cast<std::uint16_t>(index);
-        if (type == IndexType::u16)
-            std::memcpy(target + i * size, &narrow, size);
-        else
-            std::memcpy(target + i * size, &index, size);
-    }
-    return buffer;
-}
-
-} // namespace
-
-std::uint32_t add_mesh_in_parts(Resources& resources, const Mesh& mesh, VertexLayout layout,
-                                std::uint32_t vertices_per_part, std::uint32_t indices_per_part) {
-    const auto vertices = static_cast<std::uint32_t>(mesh.positions.size());
-    const auto indices = static_cast<std::uint32_t>(mesh.indices.size());
-    const auto attributes = add_vertices(resources, mesh, layout);
-    const bool indexed = indices > 0;
-    Geometry part;
-    part.index_type = !indexed                                         ? IndexType::none
-                      : std::min(vertices, vertices_per_part) <= 65536 ? IndexType::u16
-                                                                       : IndexType::u32;
-    if (indexed) part.index_buffer = add_indices(resources, mesh, part.index_type, vertices_per_part, indices_per_part);
-    std::uint32_t parts = 0;
-    for (std::uint64_t first = 0; first < vertices; first += vertices_per_part, ++parts) {
-        const std::uint64_t first_index = std::uint64_t{parts} * indices_per_part;
-        part.name = first == 0 && vertices <= vertices_per_part ? mesh.name : fmt::format("{} {}", mesh.name, parts);
-        part.attributes = attributes;
-        part.vertex_count = static_cast<std::uint32_t>(std::min<std::uint64_t>(vertices_per_part, vertices - first));
-        for (VertexAttribute& attribute : part.attributes) attribute.offset += first * attribute.stride;
-        part.index_offset = first_index * pipeline::bytes_of(part.index_type);
-        part.index_count =
-            !indexed ? part.vertex_count
-                     : static_cast<std::uint32_t>(std::min<std::uint64_t>(indices_per_part, indices - first_index));
-        resources.geometries.push_back(part);
-    }
-    return parts;
-}
-
-std::uint32_t add_mesh(Resources& resources, const Mesh& mesh, VertexLayout layout) {
-    const auto all_indices = static_cast<std::uint32_t>(std::max<std::size_t>(1, mesh.indices.size()));
-    add_mesh_in_parts(resources, mesh, layout, static_cast<std::uint32_t>(mesh.positions.size()), all_indices);
-    return static_cast<std::uint32_t>(resources.geometries.size() - 1);
-}
 
 Scene scene_of_material(std::string material, const glm::vec4& colour) {
     Scene scene;
@@ -132,10 +14,6 @@ Scene scene_of_material(std::string material, const glm::vec4& colour) {
     only.double_sided = true;
     scene.resources->materials.push_back(std::move(only));
     return scene;
-}
-
-void add_draw(Scene& scene, std::uint32_t geometry) {
-    scene.draws.push_back({scene.resources->geometries[geometry].name, geometry, 0, {glm::mat4(1.0F)}});
 }
 
 void compute_normals(Mesh& mesh) {

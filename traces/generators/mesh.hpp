@@ -3,6 +3,7 @@
 
 #include "sim/field.hpp"
 #include "sim/random.hpp"
+#include "traces/generators/vertex_format.hpp"
 #include "traces/scene.hpp"
 
 #include <array>
@@ -16,9 +17,6 @@ namespace traces {
 
 using Colour = std::array<std::uint8_t, 4>; ///< linear RGBA
 
-/// Where attributes lie: each in a buffer of its own, or all of a vertex together.
-enum class VertexLayout : std::uint8_t { separate, interleaved };
-
 /// Order of drawing of layers that differ in depth.
 enum class DepthOrder : std::uint8_t { front_to_back, back_to_front, random };
 
@@ -30,20 +28,26 @@ struct Mesh {
     std::vector<std::uint32_t> indices; ///< triangles; empty: the positions themselves
 };
 
-/// Appends the mesh as one geometry and returns its number. Indices take 16 bits where 65,536 vertices suffice.
-std::uint32_t add_mesh(pipeline::Resources& resources, const Mesh& mesh, VertexLayout layout);
+/// The vertices and indices of one draw of a mesh; the indices are those of these vertices only.
+struct MeshPart {
+    std::uint32_t first_vertex = 0, vertices = 0;
+    std::uint32_t first_index = 0, indices = 0; ///< both 0 in a mesh without indices
+};
 
-/// Appends the mesh as one geometry for each `vertices_per_part` vertices and `indices_per_part` indices, which share
-/// the buffers; indices count from the part's first vertex. Returns the number of parts; the first is the last geometry
-/// before the call plus one.
-std::uint32_t add_mesh_in_parts(pipeline::Resources& resources, const Mesh& mesh, VertexLayout layout,
-                                std::uint32_t vertices_per_part, std::uint32_t indices_per_part);
+/// The whole mesh, and one part for each `vertices` vertices and `indices` indices.
+MeshPart whole(const Mesh& mesh);
+std::vector<MeshPart> equal_parts(const Mesh& mesh, std::uint32_t vertices, std::uint32_t indices);
+
+/// Appends a geometry and a draw for each part. Parts share the buffers; their indices count from their first vertex.
+/// `place` begins the sim::InputError of a part with more than 65,536 vertices where indices have to have 16 bits.
+///
+/// Attributes that the mesh does not have: colours are white, secondary colours black; texture coordinates and generic
+/// attributes are the place of the vertex in the mesh, 0 to 1 along each axis.
+void add_draws(Scene& scene, const Mesh& mesh, const std::vector<MeshPart>& parts, const MeshFormat& format,
+               std::string_view place);
 
 /// A scene without draws, with one double-sided material of this colour.
 Scene scene_of_material(std::string material, const glm::vec4& colour);
-
-/// Draws the geometry once, where it is.
-void add_draw(Scene& scene, std::uint32_t geometry);
 
 /// Triangles with their normals weighted by area; positions and indices are given.
 void compute_normals(Mesh& mesh);
@@ -60,11 +64,6 @@ void shuffle(std::vector<T>& list, sim::Random& random) {
 }
 
 } // namespace traces
-
-template <>
-struct sim::EnumNames<traces::VertexLayout> {
-    static constexpr std::array<std::string_view, 2> names{"separate", "interleaved"};
-};
 
 template <>
 struct sim::EnumNames<traces::DepthOrder> {

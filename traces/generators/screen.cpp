@@ -28,7 +28,7 @@ Scene screen_scene(const Mesh& mesh) {
     scene.screen_space = true;
     // The colours are the ones to see, whatever the light.
     scene.resources->materials[0].unlit = true;
-    add_draw(scene, add_mesh(*scene.resources, mesh, VertexLayout::interleaved));
+    add_draws(scene, mesh, {whole(mesh)}, {.layout = VertexLayout::interleaved}, mesh.name);
     return scene;
 }
 

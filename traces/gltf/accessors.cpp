@@ -52,10 +52,6 @@ bool is_unsigned_integer(ComponentType type) {
     return type == ComponentType::u8 || type == ComponentType::u16 || type == ComponentType::u32;
 }
 
-std::uint32_t size_of(const VertexAttribute& attribute) {
-    return pipeline::bytes_of(attribute.type) * attribute.components;
-}
-
 } // namespace
 
 void Accessors::require_inside(const Elements& elements, std::size_t bytes_each, std::string_view place) const {
@@ -90,7 +86,7 @@ Accessors::Elements Accessors::elements(int index, const Wanted& wanted, std::st
         return result;
     }
     const auto& view = document_.at(document_.model().bufferViews, accessor.bufferView, place, "bufferView");
-    const std::uint32_t size = size_of(result.attribute) * (wanted.matrix ? 4 : 1);
+    const std::uint32_t size = result.attribute.bytes() * (wanted.matrix ? 4 : 1);
     document_.require(view.byteStride == 0 || (view.byteStride >= size && view.byteStride <= 252), place,
                       "a byteStride of {} to 252 in bufferView {}, got {}", size, accessor.bufferView, view.byteStride);
     result.attribute.buffer = static_cast<std::uint32_t>(accessor.bufferView);
@@ -147,7 +143,7 @@ void Accessors::overlay(std::vector<glm::vec4>& values, const tinygltf::Accessor
         document_.require(view >= 0 && offset >= 0, where, "a bufferView and an offset of at least 0");
         attribute.buffer = static_cast<std::uint32_t>(view);
         attribute.offset = static_cast<std::uint64_t>(offset);
-        attribute.stride = size_of(attribute);
+        attribute.stride = attribute.bytes();
         const Elements found{attribute, static_cast<std::size_t>(sparse.count)};
         require_inside(found, attribute.stride, where);
         return read(found, where);
@@ -185,11 +181,29 @@ std::vector<glm::mat4> Accessors::matrices(int index, std::string_view place) co
     return values;
 }
 
+VertexAttribute Accessors::computed_indices(int index, std::string_view place) {
+    constexpr float exact = 0x1p24F; // indices pass through floats
+    const Wanted one{.least_components = 1, .most_components = 1};
+    const VertexAttribute source = elements(index, one, place).attribute;
+    document_.require(is_unsigned_integer(source.type) && !source.normalized, place, "unsigned integers");
+    std::vector<std::uint32_t> indices;
+    for (const glm::vec4& value : floats(index, one, place)) {
+        document_.require(value.x < exact, place, "sparse indices below {}, got {}", exact, value.x);
+        indices.push_back(static_cast<std::uint32_t>(value.x));
+    }
+    VertexAttribute attribute;
+    attribute.type = ComponentType::u32;
+    attribute.components = 1;
+    attribute.stride = attribute.bytes();
+    attribute.buffer = add_buffer<std::uint32_t>(std::string(place), indices);
+    return attribute;
+}
+
 VertexAttribute Accessors::indices_in_place(int index, std::string_view place) {
-    document_.require(lies_in_file(index, place), place, "indices that lie in a bufferView, not sparse ones");
+    if (!lies_in_file(index, place)) return computed_indices(index, place);
     const VertexAttribute attribute = in_place(index, {}, {.least_components = 1, .most_components = 1}, place);
     document_.require(is_unsigned_integer(attribute.type) && !attribute.normalized, place, "unsigned integers");
-    document_.require(attribute.stride == size_of(attribute), place, "indices without gaps");
+    document_.require(attribute.stride == attribute.bytes(), place, "indices without gaps");
     return attribute;
 }
 

@@ -47,7 +47,8 @@ class Accessors {
     std::vector<glm::vec4> floats(int index, const Wanted& wanted, std::string_view place) const;
     std::vector<glm::mat4> matrices(int index, std::string_view place) const;
 
-    /// Where the indices of a geometry lie, as an attribute with one component.
+    /// Where the indices of a geometry lie, as an attribute with one component. Sparse ones get a buffer of their own,
+    /// of 32-bit indices.
     pipeline::VertexAttribute indices_in_place(int index, std::string_view place);
 
     /// A buffer that is not in the file.
@@ -69,6 +70,7 @@ class Accessors {
     void overlay(std::vector<glm::vec4>& values, const tinygltf::Accessor& accessor, const Elements& base,
                  std::string_view place) const;
     std::vector<glm::vec4> read(const Elements& elements, std::string_view place) const;
+    pipeline::VertexAttribute computed_indices(int index, std::string_view place);
     std::uint32_t buffer_of_view(std::uint32_t view, std::string_view place);
 
     const Document& document_;

@@ -139,7 +139,7 @@ VertexAttribute Geometries::packed(const std::string& name, Semantic semantic, c
     computed_ += values.size();
     document_.require(computed_ <= most_computed, name, "at most {} vertices of sparse, morphed and skinned meshes",
                       most_computed);
-    const bool pairs = semantic == Semantic::texcoord0 || semantic == Semantic::texcoord1;
+    const bool pairs = slot_of(semantic) == pipeline::Slot::texcoord;
     const std::uint32_t components = semantic == Semantic::colour ? 4 : pairs ? 2 : 3;
     std::vector<float> floats;
     floats.reserve(values.size() * components);

@@ -96,7 +96,7 @@ void check_numbers(const std::string& file, const json& value, const std::string
     if (!value.is_object()) return;
     for (const auto& [key, member] : value.items()) {
         if (key == "extras" || key == "extensions") continue;
-        const std::string place = path.empty() ? key : path + "." + key;
+        const std::string place = path.empty() ? key : fmt::format("{}.{}", path, key);
         if (contains(natural_numbers, key) &&
             !(member.is_number_unsigned() && member.get<std::uint64_t>() < (1ULL << 31U)))
             fail(file, one_line(place),

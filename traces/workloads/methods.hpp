@@ -13,6 +13,7 @@ namespace traces {
 Workload transparency_workload();
 Workload opaque_workload();
 Workload blended_workload();
+Workload geometry_workload();
 
 /// A row of the table of workloads; `build` takes (scene, view, parameters).
 template <sim::Described P, class Build>

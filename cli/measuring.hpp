@@ -1,0 +1,37 @@
+// What geometry, validate, calibrate and study share: how to run, a progress line, and the files they leave.
+#pragma once
+
+#include "cli/interruption.hpp"
+#include "cli/progress_line.hpp"
+#include "reports/csv.hpp"
+#include "reports/geometry/validation.hpp"
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace cli {
+
+/// Shows progress while it lives. Throws sim::InputError for a fidelity or a number of threads that is none.
+class Measuring {
+  public:
+    Measuring(const std::string& fidelity, const std::string& threads);
+    const reports::GeometryRunOptions& options() const { return options_; }
+    /// Wipes the progress line.
+    void end() { line_.reset(); }
+
+  private:
+    std::optional<ProgressLine> line_;
+    reports::GeometryRunOptions options_;
+};
+
+/// Writes a document, tables and, if there is one, a page into `directory`; returns the line that says so.
+std::string write_tables(const std::string& directory, const std::string& document_name,
+                         const nlohmann::ordered_json& document, const std::vector<reports::Table>& tables,
+                         const std::string& page);
+
+/// The only target that validate and calibrate know so far.
+void expect_geometry(const std::string& command, const std::string& target);
+
+} // namespace cli

@@ -1,0 +1,49 @@
+#include "reports/geometry/laboratory.hpp"
+
+#include "models/gpu_library.hpp"
+#include "traces/camera.hpp"
+#include "traces/workloads.hpp"
+
+#include <fmt/format.h>
+
+namespace reports {
+
+PreparedFrame prepare_frame(const GeometryExperiment& experiment, const pipeline::GpuParams& gpu) {
+    traces::PreparedScene prepared = traces::prepare_scene(traces::load_scene(experiment.scene), experiment.prepare,
+                                                           gpu.geometry.vertex_reuse, gpu.geometry.vertex_fetch.cache);
+    const traces::Scene& scene = prepared.scene;
+    traces::WorkloadOptions options;
+    options.set(experiment.reads_all ? "reads=all" : "reads=position");
+    // No fragment is made, so any view will do.
+    const pipeline::View view = traces::make_view(scene, "auto", 64, 64);
+    pipeline::Frame frame = traces::build_frame(scene, view, "geometry", options);
+    frame.submission = experiment.submission;
+    return {std::make_shared<const pipeline::Frame>(std::move(frame)),
+            std::move(prepared.steps),
+            traces::measure_meshes(scene, gpu.geometry.vertex_reuse, gpu.geometry.vertex_fetch.cache),
+            scene.triangles_drawn,
+            scene.vertices,
+            scene.name,
+            scene.hash,
+            scene.notes};
+}
+
+pipeline::VertexPathResult run_geometry(const pipeline::GpuParams& gpu, const pipeline::Frame& frame, Fidelity fidelity,
+                                        const std::atomic<bool>* stop, std::uint64_t seed) {
+    pipeline::VertexPathOptions options;
+    options.stop = stop;
+    options.seed = seed;
+    return fidelity == Fidelity::detailed ? pipeline::run_vertex_path(gpu, frame, options)
+                                          : pipeline::estimate_vertex_path(gpu, frame, options);
+}
+
+pipeline::GpuParams gpu_params(const std::string& gpu, const std::map<std::string, double>& values) {
+    sim::Config config = models::load_gpu(gpu);
+    for (const auto& [path, value] : values) config.set(fmt::format("{}={:.17g}", path, value));
+    pipeline::GpuParams params;
+    config.read("", params);
+    config.expect_all_used();
+    return params;
+}
+
+} // namespace reports

@@ -1,0 +1,185 @@
+#include "reports/geometry/text.hpp"
+
+#include "reports/numbers.hpp"
+#include "reports/text_table.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace reports {
+
+namespace {
+
+/// Three digits, however large: 0.8, 24.5, 397.
+std::string rate_text(double number) {
+    if (number >= 99.95) return fmt::format("{:.0f}", number);
+    return fmt::format("{:.{}f}", number, number >= 9.995 ? 1 : 2);
+}
+
+std::string percent_text(double share) { return fmt::format("{:.1f}%", 100 * share); }
+
+std::string status_text(RowStatus status) { return std::string(sim::enum_name(status)); }
+
+std::string cases_text(const GeometryAdvice& advice, bool colour) {
+    std::vector<std::vector<std::string>> rows;
+    for (const GeometryCase& one : advice.cases) {
+        const traces::MeshMeasure& mesh = one.measure;
+        rows.push_back({one.name, with_commas(mesh.draws), short_number(static_cast<double>(mesh.index_bytes)),
+                        short_number(static_cast<double>(mesh.vertex_bytes)), fmt::format("{:.3f}", mesh.acmr),
+                        fmt::format("{:.2f}", mesh.atvr), fmt::format("{:.2f}", mesh.overfetch),
+                        with_commas(one.result.cycles), fmt::format("{:.3f}", one.result.milliseconds),
+                        rate_text(one.result.frames_per_second()),
+                        fmt::format("{:.2f}", advice.cases.front().result.milliseconds / one.result.milliseconds),
+                        one.result.limit()});
+    }
+    return text_table({{"mesh", "", true},
+                       {"draws", ""},
+                       {"indices", "B"},
+                       {"vertices", "B"},
+                       {"ACMR", ""},
+                       {"ATVR", ""},
+                       {"overfetch", "x"},
+                       {"cycles", ""},
+                       {"time", "ms"},
+                       {"frames", "/s"},
+                       {"speed", "x"},
+                       {"limit", "", true}},
+                      rows, colour);
+}
+
+// What each part of the vertex path would take alone, the largest first.
+std::string demand_text(const GeometryAdvice& advice, bool colour) {
+    struct Demand {
+        std::string name;
+        double cycles;
+    };
+    std::vector<Demand> demands;
+    const pipeline::VertexPathResult& result = advice.cases.front().result;
+    sim::for_each_field(result.demand, [&](const auto& field, const double& cycles) {
+        if (cycles > 0) demands.push_back({std::string(field.text), cycles});
+    });
+    std::stable_sort(demands.begin(), demands.end(),
+                     [](const Demand& a, const Demand& b) { return a.cycles > b.cycles; });
+    std::vector<std::vector<std::string>> rows;
+    for (const Demand& demand : demands)
+        rows.push_back({demand.name, with_commas(static_cast<std::uint64_t>(std::llround(demand.cycles))),
+                        fmt::format("{:.3f}", demand.cycles / (advice.core_mhz * 1e3)),
+                        percent_text(demand.cycles / static_cast<double>(result.cycles))});
+    return text_table(
+        {{"as it is: what each part takes alone", "", true}, {"cycles", ""}, {"time", "ms"}, {"of frame", ""}}, rows,
+        colour);
+}
+
+std::string steps_text(const GeometryAdvice& advice, TerminalStyle style) {
+    std::string text;
+    for (const GeometryCase& one : advice.cases)
+        for (const traces::PreparationStep& step : one.steps) {
+            std::string line =
+                fmt::format("  {}: ACMR {:.3f} -> {:.3f}, overfetch {:.2f} -> {:.2f}, {} -> {} B, draws {} -> {}",
+                            step.id, step.before.acmr, step.after.acmr, step.before.overfetch, step.after.overfetch,
+                            short_number(static_cast<double>(step.before.index_bytes + step.before.vertex_bytes)),
+                            short_number(static_cast<double>(step.after.index_bytes + step.after.vertex_bytes)),
+                            step.before.draws, step.after.draws);
+            if (step.position_error) line += fmt::format("; positions move by at most {:.3g}", *step.position_error);
+            for (const std::string& note : step.notes) line += "; " + note;
+            text += wrap(line, style.columns, 4);
+        }
+    return text.empty() ? "" : "Preparations:\n" + text;
+}
+
+} // namespace
+
+std::string advice_text(const GeometryAdvice& advice, TerminalStyle style) {
+    std::string text =
+        wrap(fmt::format("{}: {} triangles; vertices from {}; GPU {}; {}", advice.scene, with_commas(advice.triangles),
+                         sim::enum_name(advice.submission), advice.gpu, sim::enum_name(advice.fidelity)),
+             style.columns, 2);
+    const double share = advice.cases.front().result.share_sampled;
+    if (share < 1) text += fmt::format("Counts are taken from {} of the triangles.\n", percent_text(share));
+    text += "\n" + cases_text(advice, style.colour) + "\n" + demand_text(advice, style.colour) + "\n" +
+            steps_text(advice, style);
+    if (!advice.left_out.empty()) text += "Left out:\n";
+    for (const pipeline::LeftOut& item : advice.left_out)
+        text += wrap(fmt::format("  {}: {}", item.unit, item.reason), style.columns, 4);
+    return text + "\n" + wrap(advice.recommendation(), style.columns, 0);
+}
+
+std::string validation_text(const GeometryValidation& validation, TerminalStyle style) {
+    std::vector<std::vector<std::string>> rows;
+    std::string explanations;
+    for (const ValidationRow& row : validation.rows) {
+        rows.push_back({row.table, row.row, row.gpu, rate_text(row.published), rate_text(row.model),
+                        fmt::format("{:.3f}", row.ratio()), status_text(row.status), fmt::format("{:.3f}", row.acmr),
+                        row.limit});
+        if (row.status == RowStatus::predicted && row.error() > large_miss)
+            explanations += wrap(fmt::format("  {} {} on {}: {}", row.table, row.row, row.gpu,
+                                             row.explanation.empty() ? "not explained" : row.explanation),
+                                 style.columns, 4);
+    }
+    std::string text = text_table({{"table", "", true},
+                                   {"row", "", true},
+                                   {"GPU", "", true},
+                                   {"published", "/s"},
+                                   {"model", "/s"},
+                                   {"ratio", ""},
+                                   {"status", "", true},
+                                   {"ACMR", ""},
+                                   {"limit", "", true}},
+                                  rows, style.colour);
+    rows.clear();
+    for (const ErrorSummary& summary : validation.summary)
+        rows.push_back({summary.gpu, std::to_string(summary.predicted), percent_text(summary.median),
+                        percent_text(summary.worst), summary.worst_row});
+    text += "\nErrors of predicted rows:\n" +
+            text_table({{"GPU", "", true}, {"rows", ""}, {"median", ""}, {"worst", ""}, {"worst row", "", true}}, rows,
+                       style.colour);
+    if (!explanations.empty()) text += "\nMisses above 25%:\n" + explanations;
+    return text;
+}
+
+std::string leave_one_out_text(const std::vector<LeftOneOut>& entries, TerminalStyle style) {
+    std::vector<std::vector<std::string>> rows;
+    for (const LeftOneOut& entry : entries)
+        rows.push_back({entry.gpu, entry.parameter, entry.row, entry.instead_of, fmt::format("{:.4g}", entry.value),
+                        fmt::format("{:.4g}", entry.usual_value),
+                        entry.found ? percent_text(entry.with_row.median) : "-",
+                        entry.found ? percent_text(entry.with_row.worst) : "-",
+                        entry.found ? entry.with_row.worst_row : "no value meets this row"});
+    return "Predictions when another row determines a number (estimates):\n" + text_table({{"GPU", "", true},
+                                                                                           {"number", "", true},
+                                                                                           {"from row", "", true},
+                                                                                           {"instead of", "", true},
+                                                                                           {"value", ""},
+                                                                                           {"usually", ""},
+                                                                                           {"median", ""},
+                                                                                           {"worst", ""},
+                                                                                           {"worst row", "", true}},
+                                                                                          rows, style.colour);
+}
+
+std::string calibration_text(const std::vector<GpuCalibration>& calibrations, TerminalStyle style) {
+    std::vector<std::vector<std::string>> rows;
+    for (const GpuCalibration& calibration : calibrations) {
+        for (const CalibratedNumber& number : calibration.numbers)
+            rows.push_back({calibration.gpu, number.step.parameter, fmt::format("{:.4g}", number.value),
+                            fmt::format("{:.4g}", number.in_file), number.step.row, rate_text(number.published),
+                            rate_text(number.model), number.step.reason});
+        for (const ScaledNumber& number : calibration.scaled)
+            rows.push_back({calibration.gpu, number.rule.parameter, fmt::format("{:.4g}", number.value),
+                            fmt::format("{:.4g}", number.in_file), "", "", "",
+                            fmt::format("that of {} by {}", number.rule.from,
+                                        number.rule.by == Scaling::memory ? "memory" : "vertex units")});
+    }
+    return text_table({{"GPU", "", true},
+                       {"number", "", true},
+                       {"found", ""},
+                       {"in file", ""},
+                       {"row", "", true},
+                       {"measured", "ms"},
+                       {"model", "ms"},
+                       {"why this row", "", true}},
+                      rows, style.colour);
+}
+
+} // namespace reports

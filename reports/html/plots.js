@@ -1,0 +1,38 @@
+// Draws the plots from the JSON in #data: [{title, x, y, logarithmic, bars, labels: [text], lines: [{name, values}]}].
+(function () {
+  "use strict";
+  if (typeof Chart === "undefined") return;
+  const plots = JSON.parse(document.getElementById("data").textContent);
+  const place = document.querySelector("#charts .charts");
+  document.getElementById("charts").hidden = plots.length === 0;
+  Chart.defaults.animation = false;
+  Chart.defaults.maintainAspectRatio = false;
+  const colours = ["#3b6fb6", "#e08a2e", "#4c9a5b", "#b0457a", "#7a62b8", "#8a6d3b", "#4aa3a3", "#777c88"];
+  const axis = text => ({ title: { display: true, text: text } });
+
+  plots.forEach(plot => {
+    const box = document.createElement("div");
+    box.className = "chart tall";
+    const canvas = document.createElement("canvas");
+    canvas.setAttribute("role", "img");
+    canvas.setAttribute("aria-label", plot.title);
+    box.appendChild(canvas);
+    place.appendChild(box);
+    const numbers = plot.labels.map(Number);
+    const numeric = !plot.bars && numbers.every(n => Number.isFinite(n));
+    const x = axis(plot.x);
+    if (numeric) x.type = plot.logarithmic ? "logarithmic" : "linear";
+    const datasets = plot.lines.map((line, i) => ({
+      label: line.name,
+      data: numeric ? line.values.map((value, point) => ({ x: numbers[point], y: value })) : line.values,
+      borderColor: colours[i % colours.length],
+      backgroundColor: colours[i % colours.length],
+      pointRadius: 3, borderWidth: 2, tension: 0
+    }));
+    new Chart(canvas, {
+      type: numeric ? "line" : "bar",
+      data: numeric ? { datasets: datasets } : { labels: plot.labels, datasets: datasets },
+      options: { plugins: { title: { display: true, text: plot.title } }, scales: { x: x, y: Object.assign({ beginAtZero: true }, axis(plot.y)) } }
+    });
+  });
+}());

@@ -3,8 +3,8 @@
 // `run_vertex_path` is the event-driven geometry front with memory behind it and a drain instead of the rasterizer.
 // `estimate_vertex_path` counts shader runs and lines on the same models without time, on samples of large draws, and
 // takes the largest demand of every draw: within 15% of the detailed run (a test), but up to 2.3 times too fast where
-// memory is read in random order, whose collisions it does not follow. Nothing is culled: what is measured is the feed (specification 004, W1), and
-// the triangles of a closed mesh that face away are set up before they are dropped.
+// memory is read in random order, whose collisions it does not follow. Nothing is culled: what is measured is the feed
+// (specification 004, W1), and the triangles of a closed mesh that face away are set up before they are dropped.
 // Source: specification 004, sections 2.2, 5 (frame-time skeleton), 9.11.
 #pragma once
 

@@ -1,8 +1,8 @@
 // Studies of geometry feed: a data file asks one question, the model answers with a table and a plot.
 //
 // A file (reports/studies/NAME.toml) has `title`, `question`, `source`, `gpus`, `x` (title of the axis), `logarithmic`,
-// `measure` (what is plotted), `series` (each with a scene, preparations and so on, in which {name} stands for a variable of the
-// point) and `points` (each with `x` and the variables).
+// `measure` (what is plotted), `series` (each with a scene, preparations and so on, in which {name} stands for a
+// variable of the point) and `points` (each with `x` and the variables).
 #pragma once
 
 #include "reports/csv.hpp"
@@ -53,7 +53,8 @@ struct StudyResult {
 /// The studies on hand, sorted.
 std::vector<std::string> study_names();
 
-/// By name, or a .toml file. Throws sim::InputError for an unknown name (naming what is near) and for a file that is none.
+/// By name, or a .toml file. Throws sim::InputError for an unknown name (naming what is near) and for a file that is
+/// none.
 Study load_study(const std::string& name_or_path);
 
 /// @param gpus empty: those that the study names

@@ -29,8 +29,7 @@ class TomlTable {
     void tables(std::string_view key, const std::function<void(TomlTable&)>& each);
 
     /// Calls `each` with every table of a list, its values as texts.
-    void entry_lists(std::string_view key,
-                     const std::function<void(const std::map<std::string, std::string>&)>& each);
+    void entry_lists(std::string_view key, const std::function<void(const std::map<std::string, std::string>&)>& each);
 
     void expect_all_read() const;
     /// Throws sim::InputError "file:line:column: key: expected WHAT".

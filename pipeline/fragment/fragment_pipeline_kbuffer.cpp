@@ -127,7 +127,8 @@ void FragmentPipeline::give_to_waiting(const Thread& from, std::uint64_t targets
         for (std::uint64_t left = shared; left != 0; left &= left - 1) {
             const auto target = static_cast<std::uint32_t>(std::countr_zero(left));
             for (std::uint32_t pixel = 0; pixel < 4; ++pixel)
-                payloads_->sample(thread.task.slot, pixel, target, payloads_->values(slot, pixel) + std::size_t{target} * 4,
+                payloads_->sample(thread.task.slot, pixel, target,
+                                  payloads_->values(slot, pixel) + std::size_t{target} * 4,
                                   payloads_->version(slot, pixel, target), (*payloads_)[slot].last_read);
         }
         thread.merged &= ~shared;

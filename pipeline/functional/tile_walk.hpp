@@ -47,8 +47,8 @@ class TileWalk {
     std::int64_t extreme(std::size_t i, std::int32_t tile_x, std::int32_t tile_y, bool largest) const {
         constexpr std::int64_t reach = tile_size - 1;
         const auto part = [&](std::int64_t step) { return largest == (step > 0) ? reach * step : std::int64_t{0}; };
-        return t_.constant[i] + t_.bias[i] + t_.step_x[i] * (std::int64_t{tile_x} * tile_size) + t_.step_y[i] * (std::int64_t{tile_y} * tile_size) +
-               part(t_.step_x[i]) + part(t_.step_y[i]);
+        return t_.constant[i] + t_.bias[i] + t_.step_x[i] * (std::int64_t{tile_x} * tile_size) +
+               t_.step_y[i] * (std::int64_t{tile_y} * tile_size) + part(t_.step_x[i]) + part(t_.step_y[i]);
     }
 
     std::uint32_t walk_row(std::int32_t left, std::int32_t right, std::int32_t row) {

@@ -44,8 +44,8 @@ Scene build(const RandomQuadsParams& params) {
         // Strictly between the near and the far plane, in steps that a float between 0 and 1 can hold.
         const float depth = static_cast<float>((static_cast<double>(random.below(0x7ffffe)) + 1.0) * 0x1.0p-23);
         // In the last column the tip points to the left, so that it stays on the screen.
-        add_one_quad_triangle(mesh, static_cast<float>(column * 2), static_cast<float>(row * 2), depth,
-                              colour_of(i), column > 0 && column + 1 == columns);
+        add_one_quad_triangle(mesh, static_cast<float>(column * 2), static_cast<float>(row * 2), depth, colour_of(i),
+                              column > 0 && column + 1 == columns);
     }
     return screen_scene(mesh);
 }

@@ -2,7 +2,6 @@
 #include "cli/commands.hpp"
 #include "cli/console.hpp"
 #include "cli/measuring.hpp"
-#include "reports/atomic_file.hpp"
 #include "reports/geometry/json.hpp"
 #include "reports/geometry/tables.hpp"
 #include "reports/geometry/text.hpp"

@@ -71,10 +71,11 @@ struct MeasureCommand {
     std::string fidelity = "detailed";
     std::string threads;
     std::string directory; ///< of --out, or of --write
-    bool leave_one_out = false;
     bool json = false;
 };
-struct ValidateCommand : MeasureCommand {};
+struct ValidateCommand : MeasureCommand {
+    bool leave_one_out = false;
+};
 struct CalibrateCommand : MeasureCommand {};
 struct StudyCommand : MeasureCommand {};
 

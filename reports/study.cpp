@@ -1,6 +1,5 @@
 #include "reports/study.hpp"
 
-#include "models/gpu_library.hpp"
 #include "pipeline/functional/parallel.hpp"
 #include "pipeline/geometry/host.hpp"
 #include "reports/toml_reader.hpp"
@@ -101,15 +100,6 @@ pipeline::Submission submission_of(const std::string& text, const Study& study) 
     return static_cast<pipeline::Submission>(found - names.begin());
 }
 
-pipeline::GpuParams params_of(const std::string& gpu, const std::vector<std::string>& settings) {
-    sim::Config config = models::load_gpu(gpu);
-    for (const std::string& setting : settings) config.set(setting);
-    pipeline::GpuParams params;
-    config.read("", params);
-    config.expect_all_used();
-    return params;
-}
-
 StudyValue measure(const PreparedFrame& prepared, const pipeline::GpuParams& gpu, const GeometryRunOptions& options) {
     const pipeline::VertexPathResult result = run_geometry(gpu, *prepared.frame, options.fidelity, options.stop);
     StudyValue value;
@@ -173,7 +163,7 @@ StudyResult run_study(const Study& study, const std::vector<std::string>& gpus, 
         std::optional<PreparedFrame> prepared;
         for (std::size_t i = 0; i < each; ++i) {
             const std::string& gpu = result.study.gpus[i];
-            const pipeline::GpuParams params = params_of(gpu, filled(series.settings, point, study));
+            const pipeline::GpuParams params = configured_gpu(gpu, filled(series.settings, point, study));
             if (!prepared) prepared = prepare_frame(experiment, params);
             StudyValue value = measure(*prepared, params, options);
             value.gpu = gpu;

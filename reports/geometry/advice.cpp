@@ -1,7 +1,5 @@
 #include "reports/geometry/advice.hpp"
 
-#include "models/gpu_library.hpp"
-
 #include <algorithm>
 #include <chrono>
 #include <fmt/format.h>
@@ -28,15 +26,6 @@ std::vector<Candidate> candidates(const GeometryExperiment& experiment) {
             {"recommended + quantise", {"recommended", "quantise"}}};
 }
 
-pipeline::GpuParams read_gpu(const GeometryRequest& request) {
-    sim::Config config = models::load_gpu(request.gpu);
-    for (const std::string& setting : request.gpu_settings) config.set(setting);
-    pipeline::GpuParams params;
-    config.read("", params);
-    config.expect_all_used();
-    return params;
-}
-
 } // namespace
 
 std::size_t GeometryAdvice::best() const {
@@ -61,7 +50,7 @@ std::string GeometryAdvice::recommendation() const {
 
 GeometryAdvice advise(const GeometryRequest& request, const GeometryRunOptions& options) {
     const auto begin = std::chrono::steady_clock::now();
-    const pipeline::GpuParams gpu = read_gpu(request);
+    const pipeline::GpuParams gpu = configured_gpu(request.gpu, request.gpu_settings);
     GeometryAdvice advice;
     advice.gpu = request.gpu;
     advice.submission = request.experiment.submission;

@@ -37,13 +37,19 @@ pipeline::VertexPathResult run_geometry(const pipeline::GpuParams& gpu, const pi
                                           : pipeline::estimate_vertex_path(gpu, frame, options);
 }
 
-pipeline::GpuParams gpu_params(const std::string& gpu, const std::map<std::string, double>& values) {
+pipeline::GpuParams configured_gpu(const std::string& gpu, const std::vector<std::string>& settings) {
     sim::Config config = models::load_gpu(gpu);
-    for (const auto& [path, value] : values) config.set(fmt::format("{}={:.17g}", path, value));
+    for (const std::string& setting : settings) config.set(setting);
     pipeline::GpuParams params;
     config.read("", params);
     config.expect_all_used();
     return params;
+}
+
+pipeline::GpuParams gpu_params(const std::string& gpu, const std::map<std::string, double>& values) {
+    std::vector<std::string> settings;
+    for (const auto& [path, value] : values) settings.push_back(fmt::format("{}={:.17g}", path, value));
+    return configured_gpu(gpu, settings);
 }
 
 } // namespace reports

@@ -35,7 +35,9 @@ PreparedFrame prepare_frame(const GeometryExperiment& experiment, const pipeline
 pipeline::VertexPathResult run_geometry(const pipeline::GpuParams& gpu, const pipeline::Frame& frame, Fidelity fidelity,
                                         const std::atomic<bool>* stop = nullptr, std::uint64_t seed = 1);
 
-/// The parameters of a GPU with some of them set; throws sim::InputError as models::load_gpu does.
+/// The parameters of a GPU with settings "section.key=value", or with values by path. Throw sim::InputError as
+/// models::load_gpu does, and for a key that nothing reads.
+pipeline::GpuParams configured_gpu(const std::string& gpu, const std::vector<std::string>& settings);
 pipeline::GpuParams gpu_params(const std::string& gpu, const std::map<std::string, double>& values = {});
 
 } // namespace reports

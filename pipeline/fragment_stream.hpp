@@ -5,6 +5,8 @@
 // tiles), 2x2 quad (row by row within the tile).
 #pragma once
 
+#include "pipeline/output/kbuffer.hpp"
+
 #include <array>
 #include <cstdint>
 #include <glm/vec4.hpp>
@@ -72,6 +74,12 @@ struct FragmentStream {
 
     std::uint64_t fragments = 0;           ///< covered pixels over all quads
     std::uint64_t fragments_discarded = 0; ///< covered but not alive
+
+    std::uint32_t draw_of(QuadId quad) const { return triangles[quads[quad].triangle].draw; }
+    /// What a modify program may read of pixel `lane` (0 to 3) of a quad.
+    Fragment fragment(QuadId quad, std::size_t lane) const {
+        return {colours.empty() ? nullptr : &colours[quad][lane].x, depths[quad][lane], draw_of(quad)};
+    }
 
     std::uint64_t bytes() const; ///< memory held by the vectors
 };

@@ -6,6 +6,7 @@
 
 #include "pipeline/draw.hpp"
 #include "pipeline/output/kbuffer.hpp"
+#include "pipeline/resolve.hpp"
 
 #include <memory>
 #include <string>
@@ -89,6 +90,7 @@ struct Frame {
     Needs needs;
     std::vector<LeftOut> left_out;                ///< by the pass graph: culled passes, unread attributes
     std::shared_ptr<const ModifyProgram> program; ///< null when no pass has a k-buffer
+    std::shared_ptr<const Resolve> resolve;       ///< null: the layers are composited front to back
     DepthFormat depth_format = DepthFormat::d24;
     ColourFormat colour_format = ColourFormat::rgba8;
     glm::vec4 background{1.0F};

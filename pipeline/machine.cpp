@@ -290,10 +290,8 @@ void Machine::keep_layer(std::uint32_t layer, std::size_t pixel, const FragmentS
     const Quad& quad = stream.quads[winner];
     const std::size_t x = pixel % frame_->view.width, y = pixel / frame_->view.width;
     const std::size_t corner = (y - quad.y) * 2 + (x - quad.x);
-    const float* rgba = stream.colours.empty() ? nullptr : &stream.colours[winner][corner].x;
-    program.make_entry(rgba, stream.depths[winner][corner],
-                       layers_.data() + pixel * program.floats_per_pixel() +
-                           std::size_t{layer} * program.floats_per_entry());
+    program.make_entry(stream.fragment(winner, corner), layers_.data() + pixel * program.floats_per_pixel() +
+                                                            std::size_t{layer} * program.floats_per_entry());
 }
 
 RunResult Machine::run(const ReferenceImage& reference) {

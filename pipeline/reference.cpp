@@ -71,7 +71,7 @@ class PassRunner {
         if (!depth_test(depth)) return;
         if (counts_complexity_) ++image_.depth_complexity[pixel_];
         if (pass_.colour) write_colour(quad);
-        if (pass_.kbuffer) insert(quad, depth);
+        if (pass_.kbuffer) insert(quad);
     }
 
     /// True when the fragment passes. A failed fragment still counts in the depth complexity of frames without
@@ -97,10 +97,8 @@ class PassRunner {
         for (int i = 0; i < 4; ++i) stored[i] = colour[i];
     }
 
-    void insert(QuadId quad, float depth) {
-        constexpr std::array<float, 4> no_colour{};
-        const float* rgba = stream_.colours.empty() ? no_colour.data() : &stream_.colours[quad][lane_][0];
-        frame_.program->make_entry(rgba, depth, entry_.data());
+    void insert(QuadId quad) {
+        frame_.program->make_entry(stream_.fragment(quad, lane_), entry_.data());
         float* stored = surfaces_.kbuffer.data() + pixel_ * floats_;
         if (delay_ == 1) {
             if (frame_.program->insert(stored, entry_.data())) ++accepted_;

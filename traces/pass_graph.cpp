@@ -258,7 +258,10 @@ Frame PassGraph::lower() const {
     }
     const Offers offers = offers_of(frame);
     frame.needs = needs_of(frame, offers, flat_colours_);
-    if (!frame.needs.kbuffer) frame.program = nullptr;
+    if (!frame.needs.kbuffer) {
+        frame.program = nullptr;
+        frame.resolve = nullptr;
+    }
     frame.left_out = left_out_;
     for (LeftOut& item : culling.left_out()) frame.left_out.push_back(std::move(item));
     list_left_out(frame.left_out, frame.needs, offers, read_attributes(frame));

@@ -37,7 +37,7 @@ class Multipass final : public KBufferDesign {
     std::string_view id() const override { return name; }
     std::string_view summary() const override { return text; }
     std::string refuses(const ModifyProgram& program) const override {
-        return program.id() == "nearest-k" ? "" : "peeling gives the nearest layers and nothing else";
+        return program.peeling() == Peeling::nearest ? "" : "peeling gives the nearest layers and nothing else";
     }
     KBufferPlan plan(const ModifyProgram&, const View&) const override {
         KBufferPlan plan;

@@ -46,10 +46,11 @@ class NearestK final : public pipeline::ModifyProgram {
         return true;
     }
 
-    void make_entry(const float* rgba, float depth, float* entry) const override {
-        for (std::uint32_t i = 0; i < slot; ++i) entry[i] = rgba[i];
-        entry[slot] = depth;
+    void make_entry(const pipeline::Fragment& fragment, float* entry) const override {
+        for (std::uint32_t i = 0; i < slot; ++i) entry[i] = fragment.rgba[i];
+        entry[slot] = fragment.depth;
     }
+    pipeline::Peeling peeling() const override { return pipeline::Peeling::nearest; }
 
   private:
     static constexpr std::uint32_t slot = floats - 1;

@@ -12,8 +12,7 @@ void FragmentPipeline::run_program(const QuadTask& task) {
     float entry[4];
     for (std::uint32_t pixel = 0; pixel < 4; ++pixel) {
         if ((task.mask >> pixel & 1) == 0) continue;
-        const float* rgba = stream.colours.empty() ? nullptr : &stream.colours[task.quad][pixel].x;
-        pass_->program->make_entry(rgba, stream.depths[task.quad][pixel], entry);
+        pass_->program->make_entry(stream.fragment(task.quad, pixel), entry);
         pass_->program->insert(payloads_->values(task.slot, pixel), entry);
     }
 }

@@ -43,7 +43,7 @@ struct PassContext {
     std::vector<ShaderCost> shader_costs;        ///< by draw
     bool textures = false;
 
-    std::uint32_t draw_of(QuadId quad) const { return stream->triangles[stream->quads[quad].triangle].draw; }
+    std::uint32_t draw_of(QuadId quad) const { return stream->draw_of(quad); }
 };
 
 } // namespace pipeline

@@ -78,15 +78,16 @@ class Compositor {
     std::uint32_t floats_, slot_;
 };
 
-} // namespace
+std::vector<float> drained(const ModifyProgram& program, std::span<const float> kbuffer) {
+    std::vector<float> pixels(kbuffer.begin(), kbuffer.end());
+    for (std::size_t at = 0; at < pixels.size(); at += program.floats_per_pixel()) program.drain(pixels.data() + at);
+    return pixels;
+}
 
-std::vector<float> composite(const Frame& frame, std::span<const float> kbuffer, std::span<const float> opaque_colour) {
-    CHECK(frame.program != nullptr);
+std::vector<float> composite_layers(const Frame& frame, std::span<const float> kbuffer,
+                                    std::span<const float> opaque_colour) {
     const std::size_t pixels = std::size_t{frame.view.width} * frame.view.height;
     const std::size_t floats = frame.program->floats_per_pixel();
-    CHECK(kbuffer.size() == pixels * floats);
-    CHECK(opaque_colour.empty() || opaque_colour.size() == pixels * 4);
-
     const Compositor layers(frame);
     std::vector<float> picture(pixels * 4);
     for (std::size_t i = 0; i < pixels; ++i) {
@@ -100,6 +101,23 @@ std::vector<float> composite(const Frame& frame, std::span<const float> kbuffer,
         picture[i * 4 + 3] = 1.0F;
     }
     return picture;
+}
+
+} // namespace
+
+std::vector<float> composite(const Frame& frame, std::span<const float> kbuffer, std::span<const float> opaque_colour) {
+    CHECK(frame.program != nullptr);
+    const std::size_t pixels = std::size_t{frame.view.width} * frame.view.height;
+    CHECK(kbuffer.size() == pixels * frame.program->floats_per_pixel());
+    CHECK(opaque_colour.empty() || opaque_colour.size() == pixels * 4);
+
+    std::vector<float> finished;
+    if (frame.program->drains()) {
+        finished = drained(*frame.program, kbuffer);
+        kbuffer = finished;
+    }
+    return frame.resolve ? frame.resolve->picture(frame, kbuffer, opaque_colour)
+                         : composite_layers(frame, kbuffer, opaque_colour);
 }
 
 } // namespace pipeline

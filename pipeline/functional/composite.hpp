@@ -8,8 +8,12 @@
 
 namespace pipeline {
 
-/// RGBA floats per pixel (alpha 1) of `kbuffer`, which holds program->floats_per_pixel() floats per pixel, row 0 first:
-/// C += T * a * c_i and T *= 1 - a over the entries in stored order with a = frame.opacity, then C += T * background.
+/// The picture of a frame: drains the pixels of `kbuffer` if the program asks for it, and hands them to frame.resolve;
+/// without one, composites the layers.
+///
+/// Compositing: RGBA floats per pixel (alpha 1) of `kbuffer`, which holds program->floats_per_pixel() floats per pixel,
+/// row 0 first: C += T * a * c_i and T *= 1 - a over the entries in stored order with a = frame.opacity, then C += T *
+/// background.
 ///
 /// The background is `opaque_colour` (RGBA floats per pixel) or, where that is empty, frame.background. Entries that
 /// still have the depth they were cleared to are empty. Programs with four floats per entry give the layers' colours;

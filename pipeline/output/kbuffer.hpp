@@ -2,9 +2,10 @@
 // implemented in models/programs), and *when* and under which protection that happens (KBufferDesign, implemented in
 // models/kbuffers). The pipeline knows nothing else about either.
 //
-// Layout of a pixel: `k` entries of `floats_per_entry` floats, entry 0 first, packed without gaps and padded to a
-// multiple of four floats. Four consecutive floats are one RGBA32F render target, so rgbz uses one target per entry and
-// z packs four depths into each (specification 004, section 2.3).
+// Layout of a pixel: `k` entries of `floats_per_entry` floats, entry 0 first, then `state_floats` floats that belong to
+// the pixel as a whole (a colour that a program composites into, say), packed without gaps and padded to a multiple of
+// four floats. Four consecutive floats are one RGBA32F render target, so rgbz uses one target per entry and z packs
+// four depths into each (specification 004, section 2.3).
 #pragma once
 
 #include <cstdint>
@@ -22,6 +23,25 @@ struct ProgramCost {
 
 enum class OrderNeed : std::uint8_t { any, primitive_order };
 
+/// Which geometry passes with a fixed-function depth test give the same entries; see KBufferDesign.
+enum class Peeling : std::uint8_t {
+    none,    ///< no passes do
+    nearest, ///< entry i is the i-th nearest fragment
+    ranges,  ///< entry i is the nearest fragment whose depth lies in range i
+};
+
+/// A range of window depths, near included, far excluded.
+struct DepthInterval {
+    float near = 0, far = 0;
+};
+
+/// What a program may read of a shaded fragment.
+struct Fragment {
+    const float* rgba = nullptr; ///< linear RGBA of the shader, four floats; null when the program needs no colour
+    float depth = 0;             ///< window depth
+    std::uint32_t draw = 0;      ///< index into Frame::draws
+};
+
 /// A pure function over (entries of a pixel, fragment). Source: Bavoil 2007, section 4.3 (A5).
 class ModifyProgram {
   public:
@@ -33,8 +53,10 @@ class ModifyProgram {
     std::uint32_t k() const { return k_; }
     /// Floats per entry: 1 (depth) to 4.
     std::uint32_t floats_per_entry() const { return floats_; }
-    /// RGBA32F render targets that hold one pixel: ceil(k * floats_per_entry / 4).
-    std::uint32_t targets() const { return (k_ * floats_ + 3) / 4; }
+    /// Floats of a pixel behind its entries.
+    std::uint32_t state_floats() const { return state_; }
+    /// RGBA32F render targets that hold one pixel: ceil((k * floats_per_entry + state_floats) / 4).
+    std::uint32_t targets() const { return (k_ * floats_ + state_ + 3) / 4; }
     std::uint32_t floats_per_pixel() const { return targets() * 4; }
     std::uint32_t bytes_per_pixel() const { return targets() * 16; }
 
@@ -51,14 +73,24 @@ class ModifyProgram {
     /// Returns true when it changed the pixel.
     virtual bool insert(float* pixel, const float* fragment) const = 0;
     /// Lays a shaded fragment out as an entry: floats_per_entry() floats.
-    virtual void make_entry(const float* rgba, float depth, float* entry) const = 0;
+    virtual void make_entry(const Fragment& fragment, float* entry) const = 0;
+
+    /// What is left to do with a pixel after its last fragment, before the picture is made; most programs do nothing.
+    virtual bool drains() const { return false; }
+    virtual void drain(float*) const {}
+
+    virtual Peeling peeling() const { return Peeling::none; }
+    /// Of entry i, when peeling() is by ranges.
+    virtual DepthInterval range(std::uint32_t) const { return {}; }
 
   protected:
-    ModifyProgram(std::uint32_t k, std::uint32_t floats) : k_(k), floats_(floats) {}
+    ModifyProgram(std::uint32_t k, std::uint32_t floats, std::uint32_t state = 0)
+        : k_(k), floats_(floats), state_(state) {}
 
   private:
     std::uint32_t k_;
     std::uint32_t floats_;
+    std::uint32_t state_;
 };
 
 } // namespace pipeline

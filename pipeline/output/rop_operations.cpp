@@ -117,9 +117,7 @@ std::uint32_t Rop::run_blend(const Queued& queued) {
     for (std::uint32_t pixel = 0; pixel < 4; ++pixel) {
         if ((queued.task.mask >> pixel & 1) == 0) continue;
         float entry[4];
-        const float* rgba =
-            pass_->stream->colours.empty() ? nullptr : &pass_->stream->colours[queued.task.quad][pixel].x;
-        program.make_entry(rgba, pass_->stream->depths[queued.task.quad][pixel], entry);
+        program.make_entry(pass_->stream->fragment(queued.task.quad, pixel), entry);
         float* stored = surfaces_.kbuffer->latest(block, pixel);
         PixelVersion& version = surfaces_.kbuffer->latest_version(block, pixel);
         const std::uint32_t order = queued.task.order[pixel];

@@ -41,9 +41,8 @@ std::vector<float> depths_at(const pipeline::Frame& frame, const std::vector<flo
 std::vector<float> entry_of(const Replay& replay, std::size_t pixel, pipeline::QuadId quad) {
     const pipeline::FragmentStream& stream = replay.kbuffer_stream();
     const std::size_t x = pixel % stream.width, y = pixel / stream.width, lane = y % 2 * 2 + x % 2;
-    const float* rgba = stream.colours.empty() ? nullptr : &stream.colours[quad][lane].x;
     std::vector<float> entry(replay.frame.program->floats_per_entry());
-    replay.frame.program->make_entry(rgba, stream.depths[quad][lane], entry.data());
+    replay.frame.program->make_entry(stream.fragment(quad, lane), entry.data());
     return entry;
 }
 

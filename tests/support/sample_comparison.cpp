@@ -25,7 +25,7 @@ class TwoNearest final : public pipeline::ModifyProgram {
         for (std::uint32_t layer = 0; layer < layers; ++layer) pixel[layer * floats_per_entry() + depth_slot()] = 1.0F;
     }
     bool insert(float*, const float*) const override { return false; }
-    void make_entry(const float*, float, float*) const override {}
+    void make_entry(const pipeline::Fragment&, float*) const override {}
 
   private:
     bool colours_;

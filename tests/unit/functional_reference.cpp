@@ -36,9 +36,9 @@ class SmallestDepths : public ModifyProgram {
         std::copy(fragment, fragment + n, pixel + place * n);
         return true;
     }
-    void make_entry(const float* rgba, float depth, float* entry) const override {
-        if (floats_per_entry() == 4) std::copy(rgba, rgba + 3, entry);
-        entry[depth_slot()] = depth;
+    void make_entry(const Fragment& fragment, float* entry) const override {
+        if (floats_per_entry() == 4) std::copy(fragment.rgba, fragment.rgba + 3, entry);
+        entry[depth_slot()] = fragment.depth;
     }
 };
 

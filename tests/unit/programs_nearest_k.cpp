@@ -26,7 +26,7 @@ std::vector<Layer> run_rgbz(const ModifyProgram& program, const std::vector<floa
     for (std::size_t i = 0; i < depths.size(); ++i) {
         const std::array<float, 4> rgba{static_cast<float>(i), 0.0F, 0.0F, 1.0F};
         std::array<float, 4> entry;
-        program.make_entry(rgba.data(), depths[i], entry.data());
+        program.make_entry({rgba.data(), depths[i], 0}, entry.data());
         program.insert(pixel.data(), entry.data());
     }
     std::vector<Layer> layers;
@@ -175,7 +175,7 @@ TEST(NearestK, EntriesLieAsTheContractSays) {
     const auto rgbz = models::make_nearest_k(EntryKind::rgbz, 4);
     const std::array<float, 4> rgba{0.1F, 0.2F, 0.3F, 0.4F};
     std::array<float, 4> entry{};
-    rgbz->make_entry(rgba.data(), 0.7F, entry.data());
+    rgbz->make_entry({rgba.data(), 0.7F, 0}, entry.data());
     EXPECT_EQ(entry, (std::array<float, 4>{0.1F, 0.2F, 0.3F, 0.7F}));
     EXPECT_EQ(rgbz->depth_slot(), 3U);
     EXPECT_TRUE(rgbz->needs_colour());

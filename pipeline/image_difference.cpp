@@ -15,6 +15,12 @@ class PixelComparison {
         program.clear(empty_.data());
     }
 
+    bool tied(const float* run, const float* reference) const {
+        for (std::uint32_t layer = 0; layer < program_.k(); ++layer)
+            if (depth(at(run, layer)) != depth(at(reference, layer))) return false;
+        return true;
+    }
+
     void compare(const float* run, const float* reference) {
         for (std::uint32_t layer = 0; layer < program_.k(); ++layer) {
             const float* mine = at(run, layer);
@@ -59,12 +65,14 @@ KBufferDifference compare_kbuffers(const ModifyProgram& program, std::span<const
     const std::size_t floats = program.floats_per_pixel();
     result.layers.resize(program.k());
     result.wrong.resize(run.size() / floats);
+    result.tied.resize(result.wrong.size());
     PixelComparison comparison(program, result);
     for (std::size_t pixel = 0; pixel < result.wrong.size(); ++pixel) {
         const float* mine = run.data() + pixel * floats;
         const float* want = reference.data() + pixel * floats;
         if (std::memcmp(mine, want, floats * sizeof(float)) == 0) continue;
         result.wrong[pixel] = 1;
+        result.tied[pixel] = comparison.tied(mine, want) ? 1 : 0;
         ++result.wrong_pixels;
         comparison.compare(mine, want);
     }

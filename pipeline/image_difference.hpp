@@ -11,6 +11,7 @@ namespace pipeline {
 
 struct KBufferDifference {
     std::vector<std::uint8_t> wrong; ///< per pixel: 1 where any bit differs
+    std::vector<std::uint8_t> tied;  ///< per pixel: 1 where it is wrong and the depths of all entries are equal
     std::uint64_t wrong_pixels = 0;
     std::uint64_t lost_fragments = 0; ///< entries of the reference that no layer of the run holds
     std::vector<LayerErrors> layers;

@@ -43,9 +43,11 @@ void Machine::build() {
     if (!streams_.empty()) pass.stream = &streams_[0];
 
     const bool shader_site = frame_->needs.kbuffer && plan_.site == UpdateSite::fragment_shader;
-    if (frame_->needs.kbuffer && plan_.site != UpdateSite::passes)
+    const bool in_place = shader_site || (frame_->needs.kbuffer && plan_.site == UpdateSite::blender);
+    if (in_place)
         units.kbuffer.emplace(pass.layout, *pass.program,
                               shader_site && plan_.shader.visibility != Visibility::rop_cache);
+    if (keeps_lists()) units.lists.emplace(pass.layout);
     units.history.emplace(units.kbuffer ? pass.layout : SurfaceLayout{0, 0, 1});
     const auto partitions = gpu_.memory.partitions;
     // A quad keeps its slot from dispatch to commit: through the reorder buffer, the crossbar and the ROP's queue.
@@ -56,8 +58,14 @@ void Machine::build() {
 
     auto context = [&units](std::string name) { return units.simulation.context(std::move(name), units.core); };
     units.rasterizer.emplace(context("rasterizer"), gpu_.raster, pass);
-    if (frame_->needs.early_depth || options_.build_everything)
-        units.early_depth.emplace(context("early_depth_test"), gpu_.early_depth, pass);
+    if (frame_->needs.early_depth || rejects_early() || options_.build_everything)
+        units.early_depth.emplace(context("early_depth_test"), gpu_.early_depth, pass,
+                                  rejects_early() ? partitions : 0);
+    if (locks()) {
+        units.locks.emplace(context("lock_table"), plan_.shader, pass, gpu_.fragment.pipes, partitions,
+                            gpu_.fragment.pipes * gpu_.fragment.quads_in_flight);
+        if (plan_.shader.lock_area != LockArea::pixel) plan_.scheduling.tickets = plan_.shader.lock_area;
+    }
     units.scheduler.emplace(context("fragment_scheduler"), gpu_.fragment.pipes, partitions, pass, plan_.scheduling,
                             plan_.shader.flush, payloads, options_.quads_done);
     for (std::uint32_t pipe = 0; pipe < gpu_.fragment.pipes; ++pipe)
@@ -65,14 +73,27 @@ void Machine::build() {
                                  gpu_.fragment, gpu_.texture, pass, partitions, shader_site ? &plan_.shader : nullptr,
                                  payloads);
     units.reorder_buffer.emplace(context("reorder_buffer"), gpu_.reorder_buffer, gpu_.fragment.pipes,
-                                 gpu_.reorder_quads());
+                                 gpu_.reorder_quads(), plan_.retirement);
     units.crossbar.emplace(context("crossbar"), gpu_.crossbar, pass, partitions);
-    const RopSurfaces surfaces{&units.fixed, units.kbuffer ? &*units.kbuffer : nullptr, &*units.history, payloads};
+    const RopSurfaces surfaces{&units.fixed, units.kbuffer ? &*units.kbuffer : nullptr, &*units.history, payloads,
+                               units.lists ? &*units.lists : nullptr};
     for (std::uint32_t rop = 0; rop < partitions; ++rop)
         units.rops.emplace_back(context(fmt::format("rop{}", rop)), gpu_.rop, pass, plan_, surfaces,
                                 RopShape{gpu_.fragment.pipes, frame_->draws.size(),
                                          uses_depth() || options_.build_everything,
-                                         uses_colour() || options_.build_everything});
+                                         uses_colour() || options_.build_everything, kbuffer_tiles()});
+}
+
+// Tile memory holds every tile of the partition; partitions own tiles in turn, row by row.
+std::uint32_t Machine::kbuffer_tiles() const {
+    if (!units_->kbuffer && !units_->lists) return 0;
+    if (!frame_->needs.kbuffer || !plan_.shader.tile_memory) return gpu_.rop.cache_tiles;
+    const SurfaceLayout& layout = units_->pass.layout;
+    const std::uint32_t tiles = (layout.tiles_x() / layout.partitions + 1) * layout.tiles_y();
+    if (tiles > TileCache::none - 1)
+        throw sim::InputError(fmt::format("design {}: {}x{} pixels do not fit into the tile memory of {} partitions",
+                                          design_->id(), layout.width, layout.height, layout.partitions));
+    return std::max(tiles, 1U);
 }
 
 void Machine::link() {
@@ -98,13 +119,22 @@ void Machine::link() {
     }
     const std::uint32_t pipes = gpu_.fragment.pipes;
     const std::uint32_t order_width = std::max(pipes, gpu_.reorder_buffer.retire_per_clk);
-    sim::connect(units.scheduler->order_out, units.reorder_buffer->order_in, {1, order_width, gpu_.reorder_quads()});
+    const bool in_order = plan_.retirement == Retirement::in_order;
+    sim::connect(units.scheduler->order_out, units.reorder_buffer->order_in,
+                 {1, order_width, in_order ? gpu_.reorder_quads() : 4 * order_width});
     const sim::Cycle cross = gpu_.crossbar.latency;
     for (std::uint32_t pipe = 0; pipe < pipes; ++pipe) {
         FragmentPipeline& unit = units.pipes[pipe];
         sim::connect(units.scheduler->pipes_out[pipe], unit.quads_in, {1, 1, 4});
         sim::connect(unit.done_out, units.reorder_buffer->completions_in[pipe], {1, 1, 4});
         if (textures_linked_) units.memory.attach(unit.textures_out, unit.textures_in);
+        if (units.locks) {
+            const sim::Cycle way = plan_.shader.lock_latency;
+            sim::connect(unit.locks_out, units.locks->requests_in[pipe], {way, 1, static_cast<std::uint32_t>(way + 4)});
+            sim::connect(units.locks->grants_out[pipe], unit.locks_in,
+                         {way, plan_.shader.grants_per_clk,
+                          static_cast<std::uint32_t>(plan_.shader.grants_per_clk * (way + 4))});
+        }
         for (std::size_t rop = 0; rop < unit.reads_out.size(); ++rop) {
             sim::connect(unit.reads_out[rop], units.rops[rop].reads_in[pipe],
                          {cross, 1, static_cast<std::uint32_t>(cross + 4)});
@@ -123,12 +153,28 @@ void Machine::link() {
         units.memory.attach_rop(rop, unit.memory_out, unit.memory_in);
         if (!units.scheduler->commits_in.empty())
             sim::connect(unit.commits_out, units.scheduler->commits_in[rop], {1, 2, 16});
+        if (units.locks) sim::connect(unit.releases_out, units.locks->releases_in[rop], {1, 2, 16});
+        if (rejects_early())
+            sim::connect(unit.bounds_out, units.early_depth->bounds_in[rop],
+                         {cross, 1, static_cast<std::uint32_t>(cross + 4)});
     }
 }
 
 bool Machine::pass_reads_textures() const { return frame_->needs.textures || peels(); }
 
 bool Machine::peels() const { return frame_->needs.kbuffer && plan_.site == UpdateSite::passes; }
+
+bool Machine::keeps_lists() const { return frame_->needs.kbuffer && plan_.site == UpdateSite::lists; }
+
+bool Machine::locks() const {
+    return frame_->needs.kbuffer && plan_.site == UpdateSite::fragment_shader &&
+           plan_.shader.critical_section != CriticalSection::none;
+}
+
+bool Machine::rejects_early() const {
+    return frame_->needs.kbuffer && plan_.site == UpdateSite::blender &&
+           plan_.blender.early_reject != EarlyReject::none;
+}
 
 bool Machine::uses_depth() const { return frame_->needs.depth || peels(); }
 
@@ -138,12 +184,13 @@ bool Machine::uses_colour() const {
 
 std::uint64_t Machine::total_quads(const Frame& frame, std::span<const FragmentStream> streams,
                                    const KBufferDesign& design) {
-    const bool peels = frame.program != nullptr && design.plan(*frame.program, frame.view).site == UpdateSite::passes;
+    const std::uint32_t passes =
+        frame.program != nullptr ? geometry_passes(design.plan(*frame.program, frame.view), *frame.program) : 1;
     std::uint64_t quads = 0;
     std::size_t next = 0;
     for (const Pass& pass : frame.passes) {
         if (pass.kind != PassKind::draw) continue;
-        quads += streams[next++].quads.size() * (pass.kbuffer && peels ? frame.program->k() : 1);
+        quads += streams[next++].quads.size() * (pass.kbuffer ? passes : 1);
     }
     return quads;
 }
@@ -186,6 +233,8 @@ void Machine::run_draw(const FragmentStream& stream) {
     units.pass.stream = &stream;
     for (Rop& rop : units.rops) rop.begin_pass();
     units.scheduler->begin_pass();
+    if (units.locks) units.locks->begin_pass();
+    if (units.early_depth) units.early_depth->begin_pass();
     set_costs();
     units.front.start(stream, frame_->draws);
     units.simulation.run(options_.stop);
@@ -206,8 +255,10 @@ void Machine::clear(const Pass& pass) {
             units_->fixed.colour.assign(pixels, through_format(frame_->colour_format, frame_->background));
             bytes += pixels * colour_bytes(frame_->colour_format);
         }
-        // Peeling clears its layers one by one instead.
-        if (surface == "kbuffer" && units_->kbuffer) bytes += pixels * frame_->program->bytes_per_pixel();
+        // Peeling clears its layers one by one instead, lists their heads.
+        if (surface == "kbuffer" && units_->lists) bytes += pixels * plan_.lists.head_bytes;
+        if (surface == "kbuffer" && units_->kbuffer && !plan_.shader.tile_memory)
+            bytes += pixels * frame_->program->bytes_per_pixel();
     }
     if (!gpu_.rop.fast_clear && bytes != 0) stream_surface(0, bytes);
     end();
@@ -237,61 +288,13 @@ void Machine::draw(const Pass& pass, const FragmentStream& stream) {
         return;
     }
     CHECK_MSG(!pass.depth.write, "a k-buffer pass does not write the depth surface");
-    if (plan_.site == UpdateSite::passes) {
-        draw_layers(pass, stream);
-        return;
-    }
+    if (plan_.site == UpdateSite::passes) return draw_layers(pass, stream);
+    if (plan_.site == UpdateSite::lists) return draw_lists(pass, stream);
     context.read_only_depth = pass.depth.test ? &fixed.depth : nullptr;
     context.end = plan_.site == UpdateSite::blender ? FragmentEnd::kbuffer_blend : FragmentEnd::kbuffer_store;
     begin(pass.name);
     run_draw(stream);
     end();
-}
-
-// W3: per layer clear, draw with the peel test against the layer before, copy the depth for the next one.
-void Machine::draw_layers(const Pass& pass, const FragmentStream& stream) {
-    PassContext& context = units_->pass;
-    const ModifyProgram& program = *frame_->program;
-    const std::size_t pixels = std::size_t{frame_->view.width} * frame_->view.height;
-    const std::size_t floats = program.floats_per_pixel();
-    units_->drawn = std::exchange(units_->fixed, {});
-    context.read_only_depth = pass.depth.test ? &units_->drawn.depth : nullptr;
-    context.end = FragmentEnd::depth_colour;
-    context.depth = {true, true};
-    context.blend = BlendMode::replace;
-    context.depth_format = plan_.passes.depth_format;
-    context.depth_bytes = depth_bytes(context.depth_format);
-    context.colour_write = program.needs_colour();
-    context.colour_bytes = 16; // one RGBA32F target, as the k-buffer's entries
-    layers_.resize(pixels * floats);
-    for (std::size_t pixel = 0; pixel < pixels; ++pixel) program.clear(layers_.data() + pixel * floats);
-    PeeledLayer layer;
-    for (std::uint32_t i = 0; i < program.k(); ++i) {
-        begin(fmt::format("{} layer {}", pass.name, i));
-        units_->fixed.depth.assign(pixels, farthest_depth(context.depth_format));
-        units_->fixed.winner.assign(pixels, ~QuadId{0});
-        if (!gpu_.rop.fast_clear)
-            stream_surface(0, pixels * (context.depth_bytes + (context.colour_write ? context.colour_bytes : 0)));
-        context.behind = i == 0 ? nullptr : &layer;
-        run_draw(stream);
-        for (std::size_t pixel = 0; pixel < pixels; ++pixel) keep_layer(i, pixel, stream);
-        layer = {units_->fixed.depth, units_->fixed.winner};
-        if (i + 1 < program.k()) stream_surface(pixels * context.depth_bytes, pixels * context.depth_bytes);
-        end();
-    }
-    context.behind = nullptr;
-    units_->fixed = std::move(units_->drawn);
-}
-
-void Machine::keep_layer(std::uint32_t layer, std::size_t pixel, const FragmentStream& stream) {
-    const QuadId winner = units_->fixed.winner[pixel];
-    if (winner == ~QuadId{0}) return;
-    const ModifyProgram& program = *frame_->program;
-    const Quad& quad = stream.quads[winner];
-    const std::size_t x = pixel % frame_->view.width, y = pixel / frame_->view.width;
-    const std::size_t corner = (y - quad.y) * 2 + (x - quad.x);
-    program.make_entry(stream.fragment(winner, corner), layers_.data() + pixel * program.floats_per_pixel() +
-                                                            std::size_t{layer} * program.floats_per_entry());
 }
 
 RunResult Machine::run(const ReferenceImage& reference) {

@@ -19,6 +19,8 @@
 
 namespace pipeline {
 
+struct PeeledLayer;
+
 struct MachineOptions {
     std::uint64_t seed = 1;
     sim::Mode mode = sim::Mode::normal;
@@ -53,14 +55,26 @@ class Machine {
     void clear(const Pass& pass);
     void draw(const Pass& pass, const FragmentStream& stream);
     void draw_layers(const Pass& pass, const FragmentStream& stream);
-    void keep_layer(std::uint32_t layer, std::size_t pixel, const FragmentStream& stream);
+    void clear_layers();
+    void keep_layers(std::size_t pixel, const std::vector<PeeledLayer>& near_layers,
+                     const std::vector<PeeledLayer>& far_layers, const FragmentStream& stream);
+    void keep_entry(std::size_t pixel, std::uint32_t entry, QuadId id, const FragmentStream& stream);
+    void draw_lists(const Pass& pass, const FragmentStream& stream);
+    std::uint64_t run_lists(const FragmentStream& stream);
+    bool overflowed(std::size_t pixel, std::uint32_t fragments) const;
+    static std::uint32_t geometry_passes(const KBufferPlan& plan, const ModifyProgram& program);
     bool pass_reads_textures() const;
     bool peels() const; ///< the k-buffer pass becomes one pass per layer
+    bool keeps_lists() const;
+    bool locks() const;
+    bool rejects_early() const;
+    std::uint32_t kbuffer_tiles() const; ///< of one partition's cache
     void run_draw(const FragmentStream& stream);
     void stream_surface(std::uint64_t read_bytes, std::uint64_t write_bytes);
     void set_costs();
     void list_units(RunResult& result) const;
     void collect_pixels(RunResult& result, const ReferenceImage& reference) const;
+    bool explained(std::size_t pixel) const; ///< a hazard happened here
     void collect_hazards(RunResult& result) const;
     void collect_counters(RunResult& result) const;
     void collect_vertex_caches(RunResult& result) const;

@@ -51,6 +51,7 @@ MachineStats Machine::Units::stats() const {
     if (early_depth) sum.early_depth = early_depth->stats();
     sum.scheduler = scheduler->stats();
     for (const FragmentPipeline& pipe : pipes) sim::add(sum.fragment, pipe.stats());
+    if (locks) sum.locks = locks->stats();
     sum.reorder_buffer = reorder_buffer->stats();
     sum.crossbar = crossbar->stats();
     for (const Rop& rop : rops) sim::add(sum.rop, rop.stats());
@@ -79,9 +80,14 @@ void Machine::list_units(RunResult& result) const {
     part(textures_linked_, "texture path to memory", "no texture and no peeled layer is read");
     part(plan_.scheduling.guard != nullptr, "dispatch guard and side buffer",
          because("the design lets every quad into the pipes"));
+    part(units.locks.has_value(), "lock table", because("the design's shaders have no critical section"));
+    part(units.lists.has_value(), "lists of fragments", because("the design keeps no fragments for later"));
     part(shader_site, "k-buffer read path of the shaders",
          because("the design does not read the k-buffer in the shader"));
-    part(plan_.site == UpdateSite::blender && units.kbuffer, "programmable blender",
+    part(plan_.site == UpdateSite::blender && units.kbuffer,
+         plan_.blender.unit == BlendUnit::program ? "programmable blender"
+         : plan_.blender.unit == BlendUnit::peel  ? "peeling unit"
+                                                  : "atomic units",
          because("the design does not modify pixels in the ROP"));
     part(units.kbuffer.has_value(), "k-buffer surface and its tile cache",
          because("the design keeps its layers in depth and colour surfaces"));
@@ -95,11 +101,13 @@ void Machine::list_units(RunResult& result) const {
 
 void Machine::collect_pixels(RunResult& result, const ReferenceImage& reference) const {
     const Units& units = *units_;
+    std::vector<std::uint8_t> tied;
     if (frame_->needs.kbuffer) {
         result.kbuffer = units.kbuffer ? units.kbuffer->image() : layers_;
         KBufferDifference difference = compare_kbuffers(*frame_->program, result.kbuffer, reference.kbuffer);
         result.wrong_mask = std::move(difference.wrong);
         result.lost_fragments = difference.lost_fragments;
+        tied = std::move(difference.tied);
         result.layers = std::move(difference.layers);
     }
     result.wrong_mask.resize(std::size_t{frame_->view.width} * frame_->view.height);
@@ -115,6 +123,19 @@ void Machine::collect_pixels(RunResult& result, const ReferenceImage& reference)
             if (depth_value(frame_->depth_format, units.fixed.depth[pixel]) != reference.depth[pixel])
                 result.wrong_mask[pixel] = 1;
     result.wrong_pixels = static_cast<std::uint64_t>(std::count(result.wrong_mask.begin(), result.wrong_mask.end(), 1));
+    for (std::size_t pixel = 0; frame_->needs.kbuffer && pixel < result.wrong_mask.size(); ++pixel) {
+        const bool overflow = overflowed(pixel, reference.depth_complexity[pixel]);
+        result.overflow_pixels += overflow ? 1 : 0;
+        if (result.wrong_mask[pixel] == 0) continue;
+        result.tied_pixels += tied[pixel];
+        result.unexplained_pixels += explained(pixel) || overflow || (plan_.order_free && tied[pixel] != 0) ? 0 : 1;
+    }
+}
+
+bool Machine::explained(std::size_t pixel) const {
+    const auto x = static_cast<std::uint32_t>(pixel % frame_->view.width),
+               y = static_cast<std::uint32_t>(pixel / frame_->view.width);
+    return units_->kbuffer && units_->history->classes(units_->pass.layout.block_of(x, y), y % 2 * 2 + x % 2) != 0;
 }
 
 std::vector<float> Machine::colour_surface() const {
@@ -149,16 +170,13 @@ void Machine::collect_hazards(RunResult& result) const {
     result.mean_staleness = total == 0 ? 0.0 : static_cast<double>(staleness) / static_cast<double>(total);
     result.lost_updates = units.kbuffer ? units.kbuffer->lost_updates() : 0;
 
+    if (total == 0) return;
     const SurfaceLayout& layout = units.pass.layout;
-    if (total != 0) result.hazard_mask.resize(std::size_t{layout.width} * layout.height);
-    for (std::size_t pixel = 0; pixel < result.wrong_mask.size(); ++pixel) {
-        const auto x = static_cast<std::uint32_t>(pixel % layout.width),
-                   y = static_cast<std::uint32_t>(pixel / layout.width);
-        const std::uint8_t classes =
-            units.kbuffer ? units.history->classes(layout.block_of(x, y), y % 2 * 2 + x % 2) : std::uint8_t{0};
-        if (total != 0) result.hazard_mask[pixel] = classes;
-        if (result.wrong_mask[pixel] != 0 && classes == 0) ++result.unexplained_pixels;
-    }
+    result.hazard_mask.resize(std::size_t{layout.width} * layout.height);
+    for (std::uint32_t y = 0; y < layout.height; ++y)
+        for (std::uint32_t x = 0; x < layout.width; ++x)
+            result.hazard_mask[std::size_t{y} * layout.width + x] =
+                units.history->classes(layout.block_of(x, y), y % 2 * 2 + x % 2);
 }
 
 void Machine::collect_counters(RunResult& result) const {
@@ -171,6 +189,7 @@ void Machine::collect_counters(RunResult& result) const {
     if (units.early_depth) stages["early_depth_test"] = one_unit_report(*units.early_depth);
     stages["fragment_scheduler"] = one_unit_report(*units.scheduler);
     stages["fragment_pipeline"] = units_report(units.pipes, stats.fragment);
+    if (units.locks) stages["lock_table"] = one_unit_report(*units.locks);
     stages["reorder_buffer"] = one_unit_report(*units.reorder_buffer);
     stages["crossbar"] = one_unit_report(*units.crossbar);
     stages["rop"] = units_report(units.rops, stats.rop);

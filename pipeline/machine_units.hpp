@@ -2,6 +2,7 @@
 #pragma once
 
 #include "pipeline/fragment/fragment_scheduler.hpp"
+#include "pipeline/fragment/lock_table.hpp"
 #include "pipeline/machine.hpp"
 #include "sim/described_json.hpp"
 
@@ -17,6 +18,7 @@ struct MachineStats {
     EarlyDepthStats early_depth;
     FragmentSchedulerStats scheduler;
     FragmentPipelineStats fragment;
+    LockTableStats locks;
     ReorderBufferStats reorder_buffer;
     CrossbarStats crossbar;
     RopStats rop;
@@ -29,6 +31,7 @@ struct MachineStats {
                           sim::field<&S::early_depth>("Early depth test"),
                           sim::field<&S::scheduler>("Fragment scheduler"),
                           sim::field<&S::fragment>("Fragment pipelines"),
+                          sim::field<&S::locks>("Lock table"),
                           sim::field<&S::reorder_buffer>("Reorder buffer"),
                           sim::field<&S::crossbar>("Crossbar"),
                           sim::field<&S::rop>("ROP partitions"),
@@ -51,6 +54,7 @@ struct Machine::Units {
     std::optional<KBufferMemory> kbuffer;
     std::optional<StoreHistory> history;
     std::optional<QuadPayloads> payloads;
+    std::optional<FragmentLists> lists;
     FixedSurfaces fixed;
     FixedSurfaces drawn; ///< result of the earlier passes, while a k-buffer pass peels its layers
 
@@ -59,6 +63,7 @@ struct Machine::Units {
     std::optional<Rasterizer> rasterizer;
     std::optional<EarlyDepthTest> early_depth;
     std::optional<FragmentScheduler> scheduler;
+    std::optional<LockTable> locks;
     std::deque<FragmentPipeline> pipes;
     std::optional<ReorderBuffer> reorder_buffer;
     std::optional<Crossbar> crossbar;

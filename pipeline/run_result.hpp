@@ -36,6 +36,7 @@ struct RunResult {
     std::string design;
     double core_mhz = 0;
     sim::Cycle cycles = 0;       ///< core cycles from the first command to the last byte written
+    double sort_milliseconds = 0; ///< of the computer's time before each frame
     std::uint64_t fragments = 0; ///< fragments that reached the k-buffer (or depth test), over all passes
 
     HazardCounts hazards;
@@ -43,10 +44,13 @@ struct RunResult {
     std::vector<std::uint64_t> hazard_distance; ///< bin b: hazards with distance in [2^b, 2^(b+1)) quads
     std::uint64_t max_staleness = 0;
     double mean_staleness = 0;
-    std::uint64_t lost_updates = 0;       ///< fragments whose store was overwritten by a stale value
-    std::uint64_t wrong_pixels = 0;       ///< pixels that differ from the reference in any bit
-    std::uint64_t unexplained_pixels = 0; ///< wrong pixels without a recorded hazard: 0 by law
-    std::uint64_t lost_fragments = 0;     ///< entries of the reference that no layer of the run holds
+    std::uint64_t lost_updates = 0;    ///< fragments whose store was overwritten by a stale value
+    std::uint64_t wrong_pixels = 0;    ///< pixels that differ from the reference in any bit
+    std::uint64_t tied_pixels = 0;     ///< of those, pixels that differ among fragments of equal depth only
+    std::uint64_t overflow_pixels = 0; ///< pixels with more fragments than the design can hold
+    std::uint64_t unexplained_pixels =
+        0; ///< wrong without a hazard, an overflow or, for designs free of order, a tie: 0 by law
+    std::uint64_t lost_fragments = 0; ///< entries of the reference that no layer of the run holds
     std::vector<LayerErrors> layers;
 
     // Per pixel, row 0 first, width * height entries.

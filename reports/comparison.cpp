@@ -8,6 +8,7 @@
 #include "reports/numbers.hpp"
 #include "traces/camera.hpp"
 #include "traces/scene.hpp"
+#include "traces/submission.hpp"
 #include "traces/workloads.hpp"
 
 #include <chrono>
@@ -97,14 +98,29 @@ void check_memory(const ComparisonInput& input, const ComparisonRequest& request
                                           request.width, request.height, bytes_text(needed), bytes_text(here)));
 }
 
-void shade(ComparisonInput& input, const Supervision& supervision) {
-    const pipeline::Frame& frame = *input.frame;
+std::vector<pipeline::FragmentStream> shade(const pipeline::Frame& frame, unsigned threads,
+                                            const Supervision& supervision) {
     pipeline::FrontEndOptions options;
-    options.threads = input.threads;
+    options.threads = threads;
     options.stop = supervision.stop;
     if (supervision.progress != nullptr)
         options.progress = [progress = supervision.progress](double share) { progress->share = share; };
-    input.streams = pipeline::rasterize_frame(frame, options);
+    return pipeline::rasterize_frame(frame, options);
+}
+
+// Designs with equal wishes share a frame.
+std::shared_ptr<const SubmittedFrame> submit(const ComparisonInput& input, const pipeline::KBufferDesign& design,
+                                             const Supervision& supervision) {
+    const pipeline::SubmissionPlan plan = design.submission();
+    if (!plan.changes() || !input.frame->program) return nullptr;
+    for (const auto& earlier : input.submitted)
+        if (earlier && earlier->plan == plan) return earlier;
+    auto result = std::make_shared<SubmittedFrame>();
+    result->plan = plan;
+    result->frame = traces::submitted(*input.frame, plan);
+    result->streams = shade(result->frame, input.threads, supervision);
+    result->reference = pipeline::run_reference(result->frame, result->streams, 1, input.threads);
+    return result;
 }
 
 FramePixels pixels_of(const pipeline::Frame& frame, std::vector<float> kbuffer, const std::vector<float>& colour) {
@@ -114,16 +130,20 @@ FramePixels pixels_of(const pipeline::Frame& frame, std::vector<float> kbuffer, 
     return pixels;
 }
 
-pipeline::RunResult run_design(const ComparisonInput& input, const pipeline::KBufferDesign& design,
-                               const Supervision& supervision) {
+pipeline::RunResult run_design(const ComparisonInput& input, std::size_t number, const Supervision& supervision) {
+    const pipeline::KBufferDesign& design = *input.designs[number];
+    const SubmittedFrame* submitted = input.submitted[number].get();
     pipeline::MachineOptions options;
     options.seed = input.seed;
     options.stop = supervision.stop;
     options.observer = supervision.observer;
     if (supervision.progress != nullptr) options.quads_done = &supervision.progress->quads_done;
     const Stopwatch watch;
-    pipeline::Machine machine(input.gpu_params, *input.frame, input.streams, design, options);
-    pipeline::RunResult result = machine.run(input.reference);
+    pipeline::Machine machine(input.gpu_params, submitted != nullptr ? submitted->frame : *input.frame,
+                              submitted != nullptr ? submitted->streams : input.streams, design, options);
+    pipeline::RunResult result = machine.run(submitted != nullptr ? submitted->reference : input.reference);
+    result.sort_milliseconds =
+        design.submission().sort_ns_per_triangle * static_cast<double>(input.scene.triangles_drawn) / 1e6;
     result.host_seconds = watch.seconds();
     return result;
 }
@@ -158,9 +178,10 @@ ComparisonInput prepare(const ComparisonRequest& request, const Supervision& sup
     check_memory(input, request);
     enter(supervision, Progress::Phase::shading);
     const Stopwatch front_end;
-    shade(input, supervision);
+    input.streams = shade(*input.frame, input.threads, supervision);
     enter(supervision, Progress::Phase::reference);
     input.reference = pipeline::run_reference(*input.frame, input.streams, 1, input.threads);
+    for (const auto& design : input.designs) input.submitted.push_back(submit(input, *design, supervision));
     input.front_end_seconds = front_end.seconds();
     input.seconds = watch.seconds();
     return input;
@@ -176,7 +197,7 @@ Comparison compare(ComparisonInput input, const Supervision& supervision) {
     comparison.runs.resize(input.designs.size());
     comparison.pixels.resize(input.designs.size());
     pipeline::parallel_for(input.threads, input.designs.size(), [&](std::size_t i) {
-        comparison.runs[i] = run_design(input, *input.designs[i], supervision);
+        comparison.runs[i] = run_design(input, i, supervision);
         comparison.pixels[i] =
             pixels_of(*input.frame, std::move(comparison.runs[i].kbuffer), comparison.runs[i].colour);
     });

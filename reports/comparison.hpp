@@ -44,6 +44,14 @@ struct Supervision {
     sim::Observer* observer = nullptr; ///< sees the run; for comparisons of one design only
 };
 
+/// The frame as the application submits it for designs that ask for another order or for batches.
+struct SubmittedFrame {
+    pipeline::SubmissionPlan plan;
+    pipeline::Frame frame;
+    std::vector<pipeline::FragmentStream> streams;
+    pipeline::ReferenceImage reference;
+};
+
 /// All that the runs share. Immutable while they run.
 struct ComparisonInput {
     SceneFacts scene;
@@ -53,6 +61,7 @@ struct ComparisonInput {
     std::vector<pipeline::FragmentStream> streams; ///< one per draw pass
     pipeline::ReferenceImage reference;
     std::vector<std::unique_ptr<pipeline::KBufferDesign>> designs;
+    std::vector<std::shared_ptr<const SubmittedFrame>> submitted; ///< by design; null where it takes the frame as it is
     std::uint64_t seed = 1;
     unsigned threads = 1; ///< at least 1
     double seconds = 0;   ///< host time that making all this took

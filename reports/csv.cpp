@@ -46,7 +46,7 @@ class WideTable {
 };
 
 // Numbers that every design has; the columns of caches and bytes follow them.
-constexpr std::array<const char*, 19> design_columns{"design",
+constexpr std::array<const char*, 21> design_columns{"design",
                                                      "cycles [core cycles]",
                                                      "core clock [MHz]",
                                                      "time [ms]",
@@ -62,6 +62,8 @@ constexpr std::array<const char*, 19> design_columns{"design",
                                                      "mean staleness [versions]",
                                                      "max staleness [versions]",
                                                      "wrong pixels [pixels]",
+                                                     "tied pixels [pixels]",
+                                                     "overflow pixels [pixels]",
                                                      "unexplained pixels [pixels]",
                                                      "lost fragments [fragments]",
                                                      "lost updates [fragments]"};
@@ -84,6 +86,8 @@ std::vector<std::string> design_cells(const RunResult& run) {
             text(run.mean_staleness),
             text(run.max_staleness),
             text(run.wrong_pixels),
+            text(run.tied_pixels),
+            text(run.overflow_pixels),
             text(run.unexplained_pixels),
             text(run.lost_fragments),
             text(run.lost_updates)};

@@ -151,6 +151,8 @@ ordered_json design_json(const pipeline::RunResult& run, const ordered_json& par
                          {"hazards", hazards_json(run)},
                          {"hazard_distance", hazard_distance_json(run)},
                          {"wrong_pixels", run.wrong_pixels},
+                         {"tied_pixels", run.tied_pixels},
+                         {"overflow_pixels", run.overflow_pixels},
                          {"unexplained_pixels", run.unexplained_pixels},
                          {"lost_fragments", run.lost_fragments},
                          {"lost_updates", run.lost_updates},

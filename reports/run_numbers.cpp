@@ -3,12 +3,10 @@
 namespace reports {
 
 double milliseconds(const pipeline::RunResult& run) {
-    return run.core_mhz > 0 ? static_cast<double>(run.cycles) / (run.core_mhz * 1e3) : 0.0;
+    return run.sort_milliseconds + (run.core_mhz > 0 ? static_cast<double>(run.cycles) / (run.core_mhz * 1e3) : 0.0);
 }
 
-double frames_per_second(const pipeline::RunResult& run) {
-    return run.cycles > 0 ? run.core_mhz * 1e6 / static_cast<double>(run.cycles) : 0.0;
-}
+double frames_per_second(const pipeline::RunResult& run) { return run.cycles > 0 ? 1e3 / milliseconds(run) : 0.0; }
 
 double hazards_per_million(const pipeline::RunResult& run) {
     return run.fragments == 0 ? 0.0

@@ -10,7 +10,7 @@ namespace reports {
 
 /// Simulated frames per second: core clock over cycles.
 double frames_per_second(const pipeline::RunResult& run);
-/// Simulated milliseconds of the frame.
+/// Simulated milliseconds of the frame, with what sorting its triangles takes before.
 double milliseconds(const pipeline::RunResult& run);
 /// Hazards in a million fragments.
 double hazards_per_million(const pipeline::RunResult& run);

@@ -2,8 +2,7 @@
 // modifies and writes the pixel in the ROP's tile cache.
 //
 // Source: specification 004, section 7.3; Bavoil 2007, section 4.3.1.
-#include "models/kbuffers/library.hpp"
-#include "sim/described_json.hpp"
+#include "models/kbuffers/configured_design.hpp"
 
 namespace models {
 
@@ -30,16 +29,14 @@ struct BlenderParams {
 };
 static_assert(sim::fully_described<BlenderParams>);
 
-class Blender final : public KBufferDesign {
+class Blender final : public ConfiguredDesign<Blender, BlenderParams> {
   public:
     static constexpr std::string_view name = "blender";
     static constexpr std::string_view text =
         "D2: programmable blender in the ROP, behind the reorder buffer, with interlock";
 
-    explicit Blender(const BlenderParams& params) : params_(params) {}
+    using ConfiguredDesign::ConfiguredDesign;
 
-    std::string_view id() const override { return name; }
-    std::string_view summary() const override { return text; }
     std::string refuses(const ModifyProgram& program) const override {
         return program.needs_texture() ? "it fetches a table, which a blender cannot" : "";
     }
@@ -49,7 +46,6 @@ class Blender final : public KBufferDesign {
         plan.blender = {params_.interlock, params_.lanes, params_.port_bytes, params_.latency};
         return plan;
     }
-    nlohmann::ordered_json parameters() const override { return sim::to_json(params_); }
     // Per ROP: the values inside the pipeline (entries and fragment), and one address comparator per stage.
     nlohmann::ordered_json area(const ModifyProgram& program, const View&, std::uint32_t) const override {
         return {{"added_state_bits", std::uint64_t{params_.latency} * program.bytes_per_pixel() * 8},
@@ -57,21 +53,10 @@ class Blender final : public KBufferDesign {
                 {"added_alu_lanes", params_.lanes},
                 {"per", "ROP"}};
     }
-
-  private:
-    BlenderParams params_;
 };
 
 } // namespace
 
-DesignInfo blender_design() {
-    return {Blender::name, Blender::text,
-            [](sim::Config& config) -> std::unique_ptr<KBufferDesign> {
-                BlenderParams params;
-                config.read(Blender::name, params);
-                return std::make_unique<Blender>(params);
-            },
-            [] { return sim::describe<BlenderParams>(Blender::name); }};
-}
+DesignInfo blender_design() { return Blender::info(); }
 
 } // namespace models

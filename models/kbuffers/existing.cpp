@@ -2,8 +2,7 @@
 // through the reorder buffer; nothing protects the interval in between.
 //
 // Source: specification 004, section 7.1; Bavoil 2007, sections 4.3.1 and 4.3.2.
-#include "models/kbuffers/library.hpp"
-#include "sim/described_json.hpp"
+#include "models/kbuffers/configured_design.hpp"
 
 namespace models {
 
@@ -39,16 +38,12 @@ struct ExistingParams {
 };
 static_assert(sim::fully_described<ExistingParams>);
 
-class Existing final : public KBufferDesign {
+class Existing final : public ConfiguredDesign<Existing, ExistingParams> {
   public:
     static constexpr std::string_view name = "existing";
     static constexpr std::string_view text = "D0: shader reads and writes the k-buffer as textures, unprotected";
 
-    explicit Existing(const ExistingParams& params) : params_(params) {}
-
-    std::string_view id() const override { return name; }
-    std::string_view summary() const override { return text; }
-    std::string refuses(const ModifyProgram&) const override { return {}; }
+    using ConfiguredDesign::ConfiguredDesign;
 
     KBufferPlan plan(const ModifyProgram&, const View&) const override {
         KBufferPlan plan;
@@ -61,25 +56,10 @@ class Existing final : public KBufferDesign {
                              params_.invalidate};
         return plan;
     }
-    nlohmann::ordered_json parameters() const override { return sim::to_json(params_); }
-    nlohmann::ordered_json area(const ModifyProgram&, const View&, std::uint32_t) const override {
-        return {{"added_state_bits", 0}, {"added_comparators", 0}, {"added_alu_lanes", 0}};
-    }
-
-  private:
-    ExistingParams params_;
 };
 
 } // namespace
 
-DesignInfo existing_design() {
-    return {Existing::name, Existing::text,
-            [](sim::Config& config) -> std::unique_ptr<KBufferDesign> {
-                ExistingParams params;
-                config.read(Existing::name, params);
-                return std::make_unique<Existing>(params);
-            },
-            [] { return sim::describe<ExistingParams>(Existing::name); }};
-}
+DesignInfo existing_design() { return Existing::info(); }
 
 } // namespace models

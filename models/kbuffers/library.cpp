@@ -12,7 +12,22 @@ const std::vector<DesignInfo>& designs() {
         existing_design(),
         scoreboard_design(),
         blender_design(),
+        peel_rop_design(),
+        sorted_design(),
+        batched_design(),
+        sorted_batched_design(),
         multipass_design(),
+        dual_peel_design(),
+        interlock_design(),
+        rov_design(),
+        framebuffer_fetch_design(),
+        cam_design(),
+        hashed_design(),
+        tile_ticket_design(),
+        atomic_min_design(),
+        linked_list_design(),
+        stencil_routed_design(),
+        detect_design(),
     };
     return list;
 }

@@ -33,5 +33,20 @@ DesignInfo existing_design();
 DesignInfo scoreboard_design();
 DesignInfo blender_design();
 DesignInfo multipass_design();
+DesignInfo peel_rop_design();
+DesignInfo sorted_design();
+DesignInfo batched_design();
+DesignInfo sorted_batched_design();
+DesignInfo interlock_design();
+DesignInfo rov_design();
+DesignInfo framebuffer_fetch_design();
+DesignInfo cam_design();
+DesignInfo hashed_design();
+DesignInfo tile_ticket_design();
+DesignInfo detect_design();
+DesignInfo atomic_min_design();
+DesignInfo linked_list_design();
+DesignInfo stencil_routed_design();
+DesignInfo dual_peel_design();
 
 } // namespace models

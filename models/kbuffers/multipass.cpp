@@ -1,11 +1,11 @@
 // D5: traditional depth peeling. One geometry pass per layer with a fixed-function depth test; the shader rejects what
-// is not behind the layer before, read from a depth texture that the pass does not write.
+// is not behind the layer before, read from a depth texture that the pass does not write. Programs that keep the
+// nearest fragment of each of several ranges of depth take one pass per range, with near and far planes of its own.
 //
 // The exact rule tells equal depths apart by submission order, so the layers are those of the reference; the eps rule
 // is the one of 2006 hardware and loses surfaces closer than eps (specification 004, section 6.1 item 5). Source:
 // specification 004, sections 3.3 (A10) and 7.6.
-#include "models/kbuffers/library.hpp"
-#include "sim/described_json.hpp"
+#include "models/kbuffers/configured_design.hpp"
 
 namespace models {
 
@@ -27,43 +27,28 @@ struct MultipassParams {
 };
 static_assert(sim::fully_described<MultipassParams>);
 
-class Multipass final : public KBufferDesign {
+class Multipass final : public ConfiguredDesign<Multipass, MultipassParams> {
   public:
     static constexpr std::string_view name = "multipass";
     static constexpr std::string_view text = "D5: depth peeling, one geometry pass per layer";
 
-    explicit Multipass(const MultipassParams& params) : params_(params) {}
+    using ConfiguredDesign::ConfiguredDesign;
 
-    std::string_view id() const override { return name; }
-    std::string_view summary() const override { return text; }
     std::string refuses(const ModifyProgram& program) const override {
-        return program.peeling() == Peeling::nearest ? "" : "peeling gives the nearest layers and nothing else";
+        return program.peeling() != Peeling::none ? ""
+                                                  : "its entries are not the nearest fragments, of all or of a range";
     }
-    KBufferPlan plan(const ModifyProgram&, const View&) const override {
+    KBufferPlan plan(const ModifyProgram& program, const View&) const override {
         KBufferPlan plan;
         plan.site = UpdateSite::passes;
         plan.passes = {params_.rule, params_.eps, params_.depth_format};
+        if (program.peeling() == Peeling::ranges) plan.passes.capture = PassCapture::range;
         return plan;
     }
-    nlohmann::ordered_json parameters() const override { return sim::to_json(params_); }
-    nlohmann::ordered_json area(const ModifyProgram&, const View&, std::uint32_t) const override {
-        return {{"added_state_bits", 0}, {"added_comparators", 0}, {"added_alu_lanes", 0}};
-    }
-
-  private:
-    MultipassParams params_;
 };
 
 } // namespace
 
-DesignInfo multipass_design() {
-    return {Multipass::name, Multipass::text,
-            [](sim::Config& config) -> std::unique_ptr<KBufferDesign> {
-                MultipassParams params;
-                config.read(Multipass::name, params);
-                return std::make_unique<Multipass>(params);
-            },
-            [] { return sim::describe<MultipassParams>(Multipass::name); }};
-}
+DesignInfo multipass_design() { return Multipass::info(); }
 
 } // namespace models

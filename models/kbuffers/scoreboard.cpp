@@ -2,9 +2,8 @@
 // taken waits in a side buffer while later ones pass, and the rasterizer stalls when that overflows.
 //
 // Source: specification 004, section 7.2; Bavoil 2007, section 4.3.1.
-#include "models/kbuffers/library.hpp"
+#include "models/kbuffers/configured_design.hpp"
 #include "sim/check.hpp"
-#include "sim/described_json.hpp"
 
 #include <bit>
 
@@ -137,17 +136,13 @@ class ScoreboardTable final : public DispatchGuard {
     std::vector<std::int32_t> pixels_; ///< quads in flight per pixel, to tell true conflicts from false ones
 };
 
-class Scoreboard final : public KBufferDesign {
+class Scoreboard final : public ConfiguredDesign<Scoreboard, ScoreboardParams> {
   public:
     static constexpr std::string_view name = "scoreboard";
     static constexpr std::string_view text =
         "D1: scoreboard in the fragment scheduler, side buffer for conflicting quads";
 
-    explicit Scoreboard(const ScoreboardParams& params) : params_(params) {}
-
-    std::string_view id() const override { return name; }
-    std::string_view summary() const override { return text; }
-    std::string refuses(const ModifyProgram&) const override { return {}; }
+    using ConfiguredDesign::ConfiguredDesign;
 
     KBufferPlan plan(const ModifyProgram&, const View& view) const override {
         KBufferPlan plan;
@@ -167,7 +162,6 @@ class Scoreboard final : public KBufferDesign {
         plan.scheduling.order_rule = params_.order_rule;
         return plan;
     }
-    nlohmann::ordered_json parameters() const override { return sim::to_json(params_); }
 
     // Table: one counter per entry that can hold all quads in flight (pixel masks: 4 bits). Side buffer: position, mask
     // and a reference to the interpolants of each quad.
@@ -182,21 +176,10 @@ class Scoreboard final : public KBufferDesign {
                 {"added_alu_lanes", 0},
                 {"per", "GPU"}};
     }
-
-  private:
-    ScoreboardParams params_;
 };
 
 } // namespace
 
-DesignInfo scoreboard_design() {
-    return {Scoreboard::name, Scoreboard::text,
-            [](sim::Config& config) -> std::unique_ptr<KBufferDesign> {
-                ScoreboardParams params;
-                config.read(Scoreboard::name, params);
-                return std::make_unique<Scoreboard>(params);
-            },
-            [] { return sim::describe<ScoreboardParams>(Scoreboard::name); }};
-}
+DesignInfo scoreboard_design() { return Scoreboard::info(); }
 
 } // namespace models

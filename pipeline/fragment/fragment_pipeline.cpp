@@ -35,6 +35,7 @@ FragmentPipeline::FragmentPipeline(sim::Context context, std::uint16_t pipe, con
       block_chain_(site != nullptr ? pass.layout.blocks() : 0),
       line_chain_(texture.l1_bytes / TextureParams::line_bytes + 1),
       shading_(params.quads_in_flight),
+      locked_(params.quads_in_flight),
       hits_(params.quads_in_flight),
       finished_(params.quads_in_flight),
       unsent_(params.quads_in_flight) {
@@ -68,14 +69,27 @@ bool FragmentPipeline::is_behind(float depth, QuadId quad, std::size_t pixel) co
     return code > captured || (code == captured && quad > pass_->behind->order[pixel]);
 }
 
-std::uint8_t FragmentPipeline::behind_layer(const QuadTask& task) const {
-    if (pass_->behind == nullptr) return task.mask;
+bool FragmentPipeline::is_before(float depth, QuadId quad, std::size_t pixel) const {
+    if (pass_->before->order[pixel] == ~QuadId{0}) return true;
+    const DepthCode captured = pass_->before->depth[pixel];
+    const DepthCode code = depth_code(pass_->depth_format, depth);
+    return code < captured || (code == captured && quad < pass_->before->order[pixel]);
+}
+
+bool FragmentPipeline::is_captured(float depth, QuadId quad, std::size_t pixel) const {
+    if (pass_->range && !(depth >= pass_->range->near && depth < pass_->range->far)) return false;
+    if (pass_->before != nullptr && !is_before(depth, quad, pixel)) return false;
+    return pass_->behind == nullptr || is_behind(depth, quad, pixel);
+}
+
+std::uint8_t FragmentPipeline::captured_pixels(const QuadTask& task) const {
+    if (pass_->behind == nullptr && !pass_->range) return task.mask;
     const Quad& quad = pass_->stream->quads[task.quad];
     std::uint8_t mask = 0;
     for (std::uint32_t pixel = 0; pixel < 4; ++pixel) {
         if ((task.mask >> pixel & 1) == 0) continue;
         const std::size_t at = static_cast<std::size_t>(quad.y + pixel / 2) * pass_->layout.width + quad.x + pixel % 2;
-        if (is_behind(pass_->stream->depths[task.quad][pixel], task.quad, at))
+        if (is_captured(pass_->stream->depths[task.quad][pixel], task.quad, at))
             mask = static_cast<std::uint8_t>(mask | 1U << pixel);
     }
     return mask;
@@ -94,7 +108,7 @@ void FragmentPipeline::start(const QuadTask& task) {
     }
     draw_ = draw;
     const std::uint8_t before = task.mask;
-    thread.task.mask = behind_layer(task);
+    thread.task.mask = captured_pixels(task);
     stats_.peel_rejects += static_cast<std::uint64_t>(std::popcount(before) - std::popcount(thread.task.mask));
     std::uint32_t alu = ceil_div(std::max(pass_->shader_costs[draw].alu, 1U), params_.alu_per_clk);
     // The program's scalar operations run four wide, for the four fragments of the quad side by side.
@@ -212,6 +226,11 @@ bool FragmentPipeline::take_answers() {
             kbuffer_arrived(port.receive().thread);
             progress = true;
         }
+    if (locks_in.connected())
+        while (locks_in.peek() != nullptr) {
+            locked_.push(locks_in.receive().thread);
+            progress = true;
+        }
     for (auto& port : invalidations_in)
         while (port.peek() != nullptr) {
             invalidate(port.receive().block);
@@ -250,8 +269,9 @@ sim::Cycle FragmentPipeline::next_event() {
         if (at > cycle()) next = std::min(next, at);
     };
     if (!hits_.empty()) note(hits_.front().ready);
-    if (!shading_.empty() && !read_in_hand_) {
-        const bool reads = threads_[shading_.front().thread].task.slot != no_slot;
+    if (!locked_.empty() && !read_in_hand_) note(texture_free_);
+    if (!shading_.empty() && (locks() || !read_in_hand_)) {
+        const bool reads = !locks() && threads_[shading_.front().thread].task.slot != no_slot;
         note(reads ? std::max(shading_.front().ready, texture_free_) : shading_.front().ready);
     }
     if (quads_in.peek() != nullptr) note(issue_free_);

@@ -4,7 +4,8 @@
 // Modelled: W quads in flight, fewer when the shader's registers run out; ALU issue rate; one texture unit with its L1;
 // pending lines are merged; misses go to memory (textures) or to the ROP partition that owns the pixel (k-buffer);
 // results leave one per cycle, out of order. A k-buffer value is sampled when its L1 lookup hits, or when the memory
-// side serves it; a hit is available after the hit latency, like any texel. A miss on its way when its line is
+// side serves it; a hit is available after the hit latency, like any texel. Where the shader has a critical section, it
+// asks the lock table before it reads. A miss on its way when its line is
 // invalidated serves whoever waits for it already, and is not kept. Not modelled: individual instructions; branches.
 // Source: specification 004, sections 7, 7.1 (t_disp, t_rd, t_done; read value rule).
 #pragma once
@@ -58,15 +59,15 @@ struct FragmentPipelineStats {
 
     static constexpr auto fields() {
         using S = FragmentPipelineStats;
-        return std::tuple{
-            sim::field<&S::quads>("Quads shaded").unit("quads"),
-            sim::field<&S::fragments>("Living fragments shaded").unit("fragments"),
-            sim::field<&S::issue_cycles>("Cycles the ALUs were reserved").unit("cycles"),
-            sim::field<&S::texture_cycles>("Cycles the texture unit was reserved").unit("cycles"),
-            sim::field<&S::peel_rejects>("Fragments rejected as not behind the previous layer").unit("fragments"),
-            sim::field<&S::kbuffer_reads>("Quads that read the k-buffer").unit("quads"),
-            sim::field<&S::in_flight_max>("Most quads in flight").unit("quads"),
-            sim::field<&S::l1>("Texture L1 cache")};
+        return std::tuple{sim::field<&S::quads>("Quads shaded").unit("quads"),
+                          sim::field<&S::fragments>("Living fragments shaded").unit("fragments"),
+                          sim::field<&S::issue_cycles>("Cycles the ALUs were reserved").unit("cycles"),
+                          sim::field<&S::texture_cycles>("Cycles the texture unit was reserved").unit("cycles"),
+                          sim::field<&S::peel_rejects>("Fragments rejected as not of the layer that the pass captures")
+                              .unit("fragments"),
+                          sim::field<&S::kbuffer_reads>("Quads that read the k-buffer").unit("quads"),
+                          sim::field<&S::in_flight_max>("Most quads in flight").unit("quads"),
+                          sim::field<&S::l1>("Texture L1 cache")};
     }
 };
 static_assert(sim::fully_described<FragmentPipelineStats>);
@@ -80,6 +81,8 @@ class FragmentPipeline final : public sim::Component {
     std::deque<sim::Out<KBufferRead>> reads_out; ///< one per ROP partition, when the shader reads the k-buffer
     std::deque<sim::In<KBufferReadDone>> reads_in;
     std::deque<sim::In<LineInvalidation>> invalidations_in; ///< one per partition, when this cache is kept coherent
+    sim::Out<LockRequest> locks_out{*this, "locks_out"};    ///< linked when shaders have a critical section
+    sim::In<LockGrant> locks_in{*this, "locks_in"};
 
     /// @param site null when the shader does not read the k-buffer
     /// @param payloads null likewise
@@ -119,6 +122,8 @@ class FragmentPipeline final : public sim::Component {
     bool take_answers();
     bool finish_one();
     bool take_hits();
+    bool ask_for_lock();
+    bool lookup_next();
     bool read_kbuffer_of_next();
     bool issue_next();
     bool send_texture_request();
@@ -136,11 +141,14 @@ class FragmentPipeline final : public sim::Component {
     void give_to_waiting(const Thread& from, std::uint64_t targets);
     void finish_complete(std::uint32_t block);
     void fill_l1(const Thread& thread, std::uint64_t targets);
+    bool locks() const { return site_ != nullptr && site_->critical_section != CriticalSection::none; }
     bool uses_l1() const { return !site_->bypass_l1 && l1_.enabled(); } ///< for the k-buffer
     void append(Chain& chain, std::uint16_t thread);
     void run_program(const QuadTask& task);
     bool is_behind(float depth, QuadId quad, std::size_t pixel) const;
-    std::uint8_t behind_layer(const QuadTask& task) const;
+    bool is_before(float depth, QuadId quad, std::size_t pixel) const;
+    bool is_captured(float depth, QuadId quad, std::size_t pixel) const;
+    std::uint8_t captured_pixels(const QuadTask& task) const;
     std::uint64_t all_targets() const {
         return program_targets_ == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << program_targets_) - 1;
     }
@@ -163,6 +171,7 @@ class FragmentPipeline final : public sim::Component {
     std::vector<Chain> block_chain_;     ///< threads that wait for lines of a block
     std::vector<Chain> line_chain_;      ///< threads that wait for a texture line of L1
     FixedQueue<Timed> shading_;          ///< in the ALUs, in order
+    FixedQueue<std::uint16_t> locked_;   ///< inside their critical section, about to read
     FixedQueue<Timed> hits_;             ///< all render targets hit L1, values on their way through the texture unit
     FixedQueue<std::uint16_t> finished_; ///< shader done, result waits for the way out
     FixedQueue<std::uint16_t> unsent_;   ///< texture requests the link had no room for

@@ -9,7 +9,7 @@ namespace pipeline {
 
 void FragmentPipeline::run_program(const QuadTask& task) {
     const FragmentStream& stream = *pass_->stream;
-    float entry[4];
+    float entry[largest_entry];
     for (std::uint32_t pixel = 0; pixel < 4; ++pixel) {
         if ((task.mask >> pixel & 1) == 0) continue;
         pass_->program->make_entry(stream.fragment(task.quad, pixel), entry);
@@ -75,27 +75,51 @@ bool FragmentPipeline::send_read(std::uint16_t index) {
     return true;
 }
 
-bool FragmentPipeline::read_kbuffer_of_next() {
-    bool progress = false;
-    if (!read_in_hand_ && !shading_.empty() && shading_.front().ready <= cycle()) {
-        const std::uint16_t index = shading_.front().thread;
-        const bool reads = threads_[index].task.slot != no_slot;
-        if (reads && texture_free_ > cycle()) return false;
+// A shader with a critical section has run up to it: the lock table says when it may enter.
+bool FragmentPipeline::ask_for_lock() {
+    if (shading_.empty() || shading_.front().ready > cycle()) return false;
+    const std::uint16_t index = shading_.front().thread;
+    const QuadTask& task = threads_[index].task;
+    if (task.slot == no_slot) {
         shading_.pop();
-        progress = true;
-        if (!reads) {
-            after_values(index);
-            return true;
-        }
-        lookup_targets(index);
-        Thread& thread = threads_[index];
-        if ((thread.own | thread.merged) == 0) {
-            hits_.push({index, texture_free_ + texture_.hit_latency});
-            return true;
-        }
-        append(block_chain_[thread.block], index);
-        if (thread.own != 0) read_in_hand_ = index;
+        after_values(index);
+        return true;
     }
+    if (!locks_out.ready()) return false;
+    locks_out.send({task.quad, task.mask, index, task.order, task.ticket});
+    shading_.pop();
+    return true;
+}
+
+// Starts the k-buffer read of the next quad that is ready for it.
+bool FragmentPipeline::lookup_next() {
+    const bool ready = locks() ? !locked_.empty() : !shading_.empty() && shading_.front().ready <= cycle();
+    if (read_in_hand_ || !ready) return false;
+    const std::uint16_t index = locks() ? locked_.front() : shading_.front().thread;
+    const bool reads = threads_[index].task.slot != no_slot;
+    if (reads && texture_free_ > cycle()) return false;
+    if (locks())
+        locked_.pop();
+    else
+        shading_.pop();
+    if (!reads) {
+        after_values(index);
+        return true;
+    }
+    lookup_targets(index);
+    Thread& thread = threads_[index];
+    if ((thread.own | thread.merged) == 0) {
+        hits_.push({index, texture_free_ + texture_.hit_latency});
+        return true;
+    }
+    append(block_chain_[thread.block], index);
+    if (thread.own != 0) read_in_hand_ = index;
+    return true;
+}
+
+bool FragmentPipeline::read_kbuffer_of_next() {
+    bool progress = locks() && ask_for_lock();
+    progress |= lookup_next();
     if (read_in_hand_ && send_read(*read_in_hand_)) {
         read_in_hand_.reset();
         progress = true;

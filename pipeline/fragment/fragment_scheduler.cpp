@@ -33,6 +33,7 @@ FragmentScheduler::FragmentScheduler(sim::Context context, std::uint32_t pipes, 
 
 void FragmentScheduler::begin_pass() {
     pixel_order_.assign(static_cast<std::size_t>(pass_->layout.width + 1) * (pass_->layout.height + 1), 0);
+    if (plan_->tickets) area_order_.assign(pass_->layout.blocks(), 0);
     batch_ = ~std::uint32_t{0};
 }
 
@@ -90,6 +91,11 @@ void FragmentScheduler::count_order(QuadTask& task) {
         if ((task.mask >> pixel & 1) == 0) continue;
         const std::size_t at = static_cast<std::size_t>(quad.y + pixel / 2) * pass_->layout.width + quad.x + pixel % 2;
         task.order[pixel] = pixel_order_[at]++;
+    }
+    if (plan_->tickets && touches_kbuffer(task)) {
+        const bool tile = *plan_->tickets == LockArea::tile;
+        const SurfaceLayout& layout = pass_->layout;
+        task.ticket = area_order_[tile ? layout.tile_of(quad.x, quad.y) : layout.block_of(quad.x, quad.y)]++;
     }
 }
 
@@ -152,7 +158,7 @@ bool FragmentScheduler::at_batch_boundary(const QuadTask& task) const {
 }
 
 // Drain, then command write-back and invalidation in band, then wait for the ROPs' answers. Without `drain` the
-// commands follow the quads already dispatched, and later quads follow at once.
+// commands follow the quads already dispatched. The quad that forces the flush is drawn behind it, before later quads.
 bool FragmentScheduler::advance_flush(bool& progress) {
     if (flush_state_ == FlushState::draining) {
         if (flush_.drain && (in_flight_ != 0 || !side_buffer_.empty())) return false;
@@ -176,7 +182,17 @@ bool FragmentScheduler::advance_flush(bool& progress) {
         }
         flush_state_ = FlushState::acknowledging;
     }
-    if (flush_.drain && flush_.writeback && acknowledged_ < commits_in.size()) return false;
+    if (flush_state_ == FlushState::acknowledging) {
+        if (flush_.drain && flush_.writeback && acknowledged_ < commits_in.size()) return false;
+        const std::uint64_t pixels = std::uint64_t{pass_->layout.width} * pass_->layout.height;
+        const std::uint32_t rate = flush_.quad_pixels_per_clk;
+        covered_at_ = cycle() + (rate == 0 ? 0 : (pixels + rate - 1) / rate);
+        flush_state_ = FlushState::covering;
+    }
+    if (covered_at_ > cycle()) {
+        wake_at(covered_at_);
+        return false;
+    }
     flush_state_ = FlushState::none;
     stats_.drain_cycles += cycle() - flush_since_;
     return true;

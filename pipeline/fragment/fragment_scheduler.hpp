@@ -73,7 +73,7 @@ class FragmentScheduler final : public sim::Component {
         QuadTask task;
         sim::Cycle since = 0;
     };
-    enum class FlushState : std::uint8_t { none, draining, commanding, acknowledging };
+    enum class FlushState : std::uint8_t { none, draining, commanding, acknowledging, covering };
 
     sim::Activity tick() override;
     bool take_commits();
@@ -98,6 +98,7 @@ class FragmentScheduler final : public sim::Component {
     bool tracked_; ///< commits come back for every quad that stores
     FragmentSchedulerStats stats_;
     std::vector<std::uint32_t> pixel_order_; ///< fragments accepted so far, per pixel
+    std::vector<std::uint32_t> area_order_;  ///< quads accepted so far, per block or tile, where locks need it
     std::vector<Waiting> side_buffer_;       ///< oldest first
     std::vector<std::uint32_t> waiting_per_key_;
     std::vector<std::uint32_t> key_seen_; ///< epoch of the last scan that met this key
@@ -113,6 +114,7 @@ class FragmentScheduler final : public sim::Component {
     std::uint32_t acknowledged_ = 0;
     std::uint32_t batch_ = ~std::uint32_t{0};
     sim::Cycle flush_since_ = 0;
+    sim::Cycle covered_at_ = 0; ///< the flushing quad has been drawn
     std::uint32_t invalidates_sent_ = 0;
     bool writeback_sent_ = false;
 };

@@ -26,6 +26,7 @@ struct QuadTask {
     QuadKind kind = QuadKind::quad;
     std::uint16_t pipe = 0;
     std::array<std::uint32_t, 4> order{}; ///< per pixel: predecessors at that pixel in raster order
+    std::uint32_t ticket = 0;             ///< predecessors in the quad's lock area, where locks are coarser than pixels
     sim::Cycle retired = 0;               ///< core cycle the reorder buffer let it go
 };
 
@@ -47,6 +48,27 @@ struct KBufferRead {
 
 struct KBufferReadDone {
     std::uint16_t thread = 0;
+};
+
+/// A quad wants to enter its critical section; the lock table answers with a grant.
+struct LockRequest {
+    QuadId quad = 0;
+    std::uint8_t mask = 0;
+    std::uint16_t thread = 0; ///< comes back in the grant
+    std::array<std::uint32_t, 4> order{};
+    std::uint32_t ticket = 0;
+};
+
+struct LockGrant {
+    std::uint16_t thread = 0;
+};
+
+/// No entry of these pixels can take a fragment at this depth or behind it any more.
+struct LastEntryBound {
+    std::uint32_t block = 0; ///< 2x2 block, or its tile when `whole_tile`
+    std::uint8_t pixel = 0;
+    bool whole_tile = false;
+    float depth = 0;
 };
 
 /// A ROP applied the store of a quad (or finished a write-back command).

@@ -7,6 +7,7 @@
 #include "pipeline/output/kbuffer_design.hpp"
 #include "pipeline/output/surface_layout.hpp"
 
+#include <optional>
 #include <vector>
 
 namespace pipeline {
@@ -15,7 +16,8 @@ namespace pipeline {
 enum class FragmentEnd : std::uint8_t {
     depth_colour,  ///< fixed function: depth test, colour write
     kbuffer_store, ///< the shader computed all entries; the ROP stores them
-    kbuffer_blend, ///< the ROP's programmable blender runs the program
+    kbuffer_blend, ///< a unit of the ROP modifies the pixel
+    kbuffer_list,  ///< the ROP adds the fragment to the list of its pixel
 };
 
 /// A layer that an earlier peeling pass captured, per pixel in row order.
@@ -36,6 +38,10 @@ struct PassContext {
     std::uint32_t colour_bytes = 4; ///< per pixel of the colour target
     std::uint32_t depth_bytes = 4;
     const PeeledLayer* behind = nullptr; ///< reject what is not behind this layer
+    const PeeledLayer* before = nullptr; ///< and what is not before this one
+    std::optional<DepthInterval> range;  ///< and what lies outside of it
+    bool farthest = false;               ///< capture the farthest fragment, too
+    std::uint32_t first_kept = 0;        ///< lists: fragments of a pixel that earlier passes have dealt with
     PassesSite peel;
     const std::vector<DepthCode>* read_only_depth = nullptr; ///< early depth test against a finished depth surface
     DepthFormat read_only_format = DepthFormat::d24;

@@ -17,6 +17,7 @@ std::uint32_t Crossbar::bytes_per_fragment() const {
     case FragmentEnd::kbuffer_store:
         return pass_->program->bytes_per_pixel();
     case FragmentEnd::kbuffer_blend:
+    case FragmentEnd::kbuffer_list:
         return pass_->program->floats_per_entry() * 4;
     case FragmentEnd::depth_colour:
         break;

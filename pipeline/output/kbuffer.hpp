@@ -16,6 +16,9 @@
 
 namespace pipeline {
 
+/// Floats of an entry, at most.
+inline constexpr std::uint32_t largest_entry = 8;
+
 /// Operations of one run of a program for one fragment, in scalar ALU operations.
 struct ProgramCost {
     std::uint32_t operations = 0;
@@ -67,6 +70,12 @@ class ModifyProgram {
     /// Index of the depth within an entry.
     virtual std::uint32_t depth_slot() const = 0;
 
+    /// Depth of an entry that holds no fragment; the last entry's, as some programs start from other ones.
+    float cleared_depth() const {
+        std::vector<float> pixel(floats_per_pixel());
+        clear(pixel.data());
+        return pixel[(k_ - 1) * floats_ + depth_slot()];
+    }
     /// Initial content of one pixel: floats_per_pixel() floats.
     virtual void clear(float* pixel) const = 0;
     /// Runs the program for one fragment. `fragment` has floats_per_entry() floats in the entry's own layout.

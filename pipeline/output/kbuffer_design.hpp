@@ -12,6 +12,7 @@
 #include <functional>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,8 +21,9 @@ namespace pipeline {
 /// Where the program runs.
 enum class UpdateSite : std::uint8_t {
     fragment_shader, ///< the shader reads the pixel as a texture and stores all entries
-    blender,         ///< the ROP's programmable blender reads, modifies and writes
-    passes,          ///< nowhere: one geometry pass per layer with a fixed-function depth test
+    blender,         ///< a unit in the ROP reads, modifies and writes
+    passes,          ///< nowhere: geometry passes with fixed-function tests
+    lists,           ///< in a pass behind the geometry, which only keeps all fragments
 };
 
 /// When a store becomes visible to a texture read.
@@ -29,7 +31,39 @@ enum class Visibility : std::uint8_t { rop_cache, writeback, never_until_flush }
 /// What drops stale k-buffer lines from the texture caches.
 enum class TextureCoherence : std::uint8_t { none, invalidate_on_draw, invalidate_on_write };
 enum class DispatchPolicy : std::uint8_t { any_pipe, tile_affinity };
-/// What a programmable blender does with a quad whose pixel is inside its pipeline.
+/// Order in which quads leave the fragment stage.
+enum class Retirement : std::uint8_t { in_order, out_of_order };
+/// Who may be inside the part of a shader that reads, modifies and stores a pixel.
+enum class CriticalSection : std::uint8_t {
+    none,
+    ordered,   ///< one quad at a time, in the order of the primitives
+    unordered, ///< one quad at a time, whoever comes first
+};
+/// What is locked for one critical section, or tested by an interlock in the ROP.
+enum class LockArea : std::uint8_t {
+    pixel, ///< the living pixels of the quad
+    quad,  ///< its 2x2 block
+    tile,  ///< the 4x4 tile that it lies in
+};
+/// What a unit of the ROP does with a fragment.
+enum class BlendUnit : std::uint8_t {
+    program,    ///< runs the modify program
+    peel,       ///< compares with all depths at once and shifts: nearest-k only
+    atomic_min, ///< one atomic minimum after the other, each with what the one before displaced
+};
+/// How the ROP finds out that a quad's pixel is inside its unit.
+enum class InterlockTest : std::uint8_t {
+    exact,  ///< compares with every quad inside (associative memory)
+    hashed, ///< counters by a hash of the pixel
+    tile,   ///< a ticket per 4x4 tile: its next quad waits for all quads of the tile inside
+};
+/// What a fragment is compared with before it is shaded, to be dropped when no entry can take it.
+enum class EarlyReject : std::uint8_t {
+    none,
+    tile,  ///< the farthest last entry of its 4x4 tile
+    pixel, ///< the last entry of its pixel
+};
+/// What a unit of the ROP does with a quad whose pixel is inside its pipeline.
 enum class BlendInterlock : std::uint8_t {
     stall,   ///< waits until the older result is written
     forward, ///< takes the older result from the pipeline's end
@@ -40,6 +74,12 @@ enum class PeelRule : std::uint8_t {
     exact, ///< by depth, then by submission order: no layer is lost or repeated
     eps,   ///< by depth + eps (specification A10)
 };
+/// What one geometry pass captures of each pixel.
+enum class PassCapture : std::uint8_t {
+    nearest,          ///< the nearest fragment behind the layer before
+    nearest_farthest, ///< and the farthest before the one captured from behind: two layers a pass
+    range,            ///< the nearest fragment of a range of depths
+};
 
 /// What separates two batches of primitives on hardware that does not protect them.
 struct FlushRule {
@@ -48,6 +88,8 @@ struct FlushRule {
     bool drain = true;                 ///< wait until all quads in flight have stored
     bool writeback = true;             ///< make all stores observable
     bool invalidate = true;            ///< drop the texture caches' k-buffer lines
+    /// Pixels per cycle of the full-screen quad, all its writes masked, that forces the flush; 0 = it costs nothing.
+    std::uint32_t quad_pixels_per_clk = 0;
     bool active() const { return every_triangles != 0 || every_draw; }
 };
 
@@ -58,6 +100,13 @@ struct ShaderSite {
     bool atomic_reads = false;  ///< one read returns all render targets of a pixel at one instant
     bool write_through = false; ///< a store cleans its tile at once
     FlushRule flush;
+    CriticalSection critical_section = CriticalSection::none;
+    LockArea lock_area = LockArea::pixel;
+    std::uint32_t lock_latency = 1;   ///< cycles from a pipe to the lock table, and back
+    std::uint32_t grants_per_clk = 4; ///< critical sections entered per cycle
+    bool tile_memory = false;         ///< the whole k-buffer is on chip; memory is touched at the end of the pass only
+    std::uint32_t read_latency = 0;   ///< of a k-buffer read that finds its tile on chip; 0 = the GPU's
+    std::uint32_t version_bits = 0;   ///< stored with each pixel, to detect hazards; 0 = none
 };
 
 struct BlenderSite {
@@ -65,12 +114,30 @@ struct BlenderSite {
     std::uint32_t lanes = 4;       ///< scalar operations per cycle of one ROP's blender
     std::uint32_t port_bytes = 32; ///< tile cache port of one ROP, bytes per cycle
     std::uint32_t latency = 16;    ///< cycles from read to write
+    InterlockTest test = InterlockTest::exact;
+    std::uint32_t test_entries = 0;    ///< quads that fit into the unit (exact; 0 = all), counters (hashed)
+    std::uint32_t atomics_per_clk = 1; ///< of one ROP, for BlendUnit::atomic_min
+    EarlyReject early_reject = EarlyReject::none;
+    BlendUnit unit = BlendUnit::program;
 };
 
 struct PassesSite {
     PeelRule rule = PeelRule::exact;
     double eps = 1e-4;
     DepthFormat depth_format = DepthFormat::d32f;
+    PassCapture capture = PassCapture::nearest;
+    std::uint32_t passes = 0; ///< geometry passes; 0 = one for each entry
+};
+
+/// Fragments of a pixel kept in order of arrival, to be put into its entries by a later full-screen pass.
+struct ListsSite {
+    std::uint32_t fragment_bytes = 32; ///< of one kept fragment with its link
+    std::uint32_t head_bytes = 4;      ///< per pixel, read and written for each fragment
+    std::uint64_t pool = 0;            ///< fragments that fit into memory, of all pixels together; 0 = no limit
+    std::uint32_t per_pixel = 0;       ///< fragments of a pixel that one geometry pass keeps; 0 = no limit
+    std::uint32_t passes = 1;          ///< geometry passes, each keeping the next `per_pixel` fragments
+    std::uint32_t counter_per_clk = 0; ///< fragments per cycle that the counter of the pool serves; 0 = no counter
+    std::uint32_t read_bytes = 32;     ///< that the later pass reads for each kept fragment
 };
 
 /// Hardware in front of the pipes, when the design has any.
@@ -82,6 +149,8 @@ struct SchedulingPlan {
     std::uint32_t lookup_latency = 2; ///< cycles
     DispatchPolicy policy = DispatchPolicy::any_pipe;
     bool order_rule = true; ///< a quad also waits behind older waiting quads of its key
+    /// Areas whose quads are numbered in raster order, for locks coarser than a pixel.
+    std::optional<LockArea> tickets;
 };
 
 struct KBufferPlan {
@@ -89,7 +158,22 @@ struct KBufferPlan {
     ShaderSite shader;
     BlenderSite blender;
     PassesSite passes;
+    ListsSite lists;
     SchedulingPlan scheduling;
+    Retirement retirement = Retirement::in_order;
+    /// Stores may happen in another order than that of the primitives; entries may then differ from the reference among
+    /// fragments of equal depth, and nowhere else.
+    bool order_free = false;
+};
+
+/// How the application hands the triangles of k-buffer passes to the GPU for a design.
+struct SubmissionPlan {
+    bool sort_by_centroid = false;     ///< front to back (A8)
+    std::uint32_t batch_triangles = 0; ///< one draw per so many triangles (A9); 0 = draws stay as they are
+    bool flush_draws = false;          ///< a draw of the flushing quad behind each draw
+    double sort_ns_per_triangle = 0;   ///< of the computer's time, before the frame
+    bool changes() const { return sort_by_centroid || batch_triangles != 0 || flush_draws; }
+    bool operator==(const SubmissionPlan&) const = default;
 };
 
 class KBufferDesign {
@@ -100,6 +184,8 @@ class KBufferDesign {
     virtual std::string_view summary() const = 0;
     /// Why the design cannot run this program; empty when it can.
     virtual std::string refuses(const ModifyProgram& program) const = 0;
+    /// How the triangles come; by default as the scene has them.
+    virtual SubmissionPlan submission() const { return {}; }
     /// A fresh plan for one machine.
     virtual KBufferPlan plan(const ModifyProgram& program, const View& view) const = 0;
     /// Effective parameters, and area proxies (bits of state, comparators, ALU lanes) for this machine's shape.
@@ -125,6 +211,22 @@ struct sim::EnumNames<pipeline::DispatchPolicy> {
 template <>
 struct sim::EnumNames<pipeline::BlendInterlock> {
     static constexpr std::array<std::string_view, 3> names{"stall", "forward", "none"};
+};
+template <>
+struct sim::EnumNames<pipeline::Retirement> {
+    static constexpr std::array<std::string_view, 2> names{"in_order", "out_of_order"};
+};
+template <>
+struct sim::EnumNames<pipeline::CriticalSection> {
+    static constexpr std::array<std::string_view, 3> names{"none", "ordered", "unordered"};
+};
+template <>
+struct sim::EnumNames<pipeline::LockArea> {
+    static constexpr std::array<std::string_view, 3> names{"pixel", "quad", "tile"};
+};
+template <>
+struct sim::EnumNames<pipeline::EarlyReject> {
+    static constexpr std::array<std::string_view, 3> names{"none", "tile", "pixel"};
 };
 template <>
 struct sim::EnumNames<pipeline::PeelRule> {

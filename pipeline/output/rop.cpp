@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
 #include <utility>
 
 namespace pipeline {
@@ -15,7 +16,7 @@ Rop::Rop(sim::Context context, const RopParams& params, const PassContext& pass,
       surfaces_(surfaces),
       depth_tiles_(shape.depth ? params.cache_tiles : 0, pass.layout.tiles()),
       colour_tiles_(shape.colour ? params.cache_tiles : 0, pass.layout.tiles()),
-      kbuffer_tiles_(surfaces.kbuffer != nullptr ? params.cache_tiles : 0, pass.layout.tiles()),
+      kbuffer_tiles_(shape.kbuffer_tiles, pass.layout.tiles()),
       ledger_(pass.layout, *surfaces.history),
       draw_outputs_(shape.draws),
       queue_(params.queue),
@@ -23,10 +24,14 @@ Rop::Rop(sim::Context context, const RopParams& params, const PassContext& pass,
       tile_reads_(1024),
       answers_(4096),
       invalidations_(4096),
+      bounds_(64),
       jobs_(1024) {
     if (plan.shader.visibility == Visibility::never_until_flush) is_unpublished_.resize(pass.layout.tiles());
     if (plan.site == UpdateSite::blender && pass.program != nullptr)
         blender_ = std::make_unique<ProgrammableBlender>(plan.blender, *pass.program, rops());
+    if (pass.program != nullptr) cleared_depth_ = pass.program->cleared_depth();
+    if (plan.blender.early_reject == EarlyReject::tile)
+        tile_bounds_.assign(pass.layout.tiles(), std::numeric_limits<float>::infinity());
     for (std::uint32_t job = static_cast<std::uint32_t>(jobs_.size()); job > 0; --job) free_jobs_.push_back(job - 1);
     port_names_.reserve(std::size_t{3} * shape.pipes);
     for (std::uint32_t pipe = 0; surfaces.payloads != nullptr && pipe < shape.pipes; ++pipe) {
@@ -48,6 +53,7 @@ RopStats Rop::stats() const {
 
 void Rop::begin_pass() {
     for (TileCache* tiles : {&depth_tiles_, &colour_tiles_, &kbuffer_tiles_}) tiles->forget();
+    std::fill(tile_bounds_.begin(), tile_bounds_.end(), std::numeric_limits<float>::infinity());
 }
 
 std::uint32_t Rop::rops() const { return std::max(1U, params_.units / pass_->layout.partitions); }
@@ -133,6 +139,9 @@ bool Rop::execute(sim::Activity& waiting) {
     case FragmentEnd::kbuffer_blend:
         cycles = run_blend(queued);
         break;
+    case FragmentEnd::kbuffer_list:
+        cycles = run_append(queued);
+        break;
     }
     unit_free_ = cycle() + cycles;
     for (const Use use : {Use::depth, Use::colour, Use::kbuffer})
@@ -164,6 +173,7 @@ sim::Activity Rop::tick() {
     progress |= send_requests();
     progress |= send_answers();
     progress |= send_invalidations();
+    progress |= send_bounds();
     if (progress) return sim::Activity::busy;
     if (waiting != sim::Activity::starved) return waiting;
     const bool holds = !requests_.empty() || !answers_.empty() || !tile_reads_.empty() || !invalidations_.empty() ||

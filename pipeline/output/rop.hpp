@@ -4,10 +4,11 @@
 // Modelled: in-order input queue whose tile lookups run ahead of execution; tile caches for depth, colour and k-buffer;
 // depth test, colour write and fixed blending; stores of k-buffer values computed by the shader; the programmable
 // blender with its interlock; k-buffer reads from texture units, served from the tile cache or from memory as the
-// visibility rule says; write-back on replacement, on command and at the end of a pass; clears and copies as streams of
-// memory traffic. Every access to a pixel's state happens in this one component, reads before writes within a cycle.
+// visibility rule says; units that modify pixels in place (programmable blender, peeling unit, atomic minima); lists of
+// fragments; write-back on replacement, on command and at the end of a pass; clears and copies as streams of memory
+// traffic. Every access to a pixel's state happens in this one component, reads before writes within a cycle.
 // Not modelled: stencil, logic operations, compression, multisampling.
-// Source: specification 004, sections 2.1, 7 (rop parameters), 7.1 (t_rop, t_vis), 7.3, 7.6.
+// Source: specification 004, sections 2.1, 7 (rop parameters), 7.1 (t_rop, t_vis), 7.3, 7.4, 7.6 and 8.
 #pragma once
 
 #include "pipeline/fixed_queue.hpp"
@@ -15,12 +16,11 @@
 #include "pipeline/fragment/pass_context.hpp"
 #include "pipeline/fragment/quad_payloads.hpp"
 #include "pipeline/memory/messages.hpp"
+#include "pipeline/output/fragment_lists.hpp"
 #include "pipeline/output/hazard_ledger.hpp"
 #include "pipeline/output/programmable_blender.hpp"
-#include "pipeline/output/tile_cache.hpp"
+#include "pipeline/output/rop_params.hpp"
 #include "sim/channel.hpp"
-#include "sim/described.hpp"
-#include "sim/stats.hpp"
 
 #include <deque>
 #include <memory>
@@ -28,73 +28,14 @@
 
 namespace pipeline {
 
-struct RopParams {
-    std::uint32_t units = 16;
-    std::uint32_t bytes_per_clk = 16;
-    std::uint32_t cache_tiles = 32;
-    std::uint32_t queue = 32;
-    std::uint32_t reads_per_clk = 1;
-    std::uint32_t read_latency = 280;
-    bool fast_clear = false;
-
-    static constexpr auto fields() {
-        using P = RopParams;
-        return std::tuple{
-            sim::field<&P::units>("ROPs of all partitions together").unit("rops").range(1, 1024),
-            sim::field<&P::bytes_per_clk>("Bytes one ROP moves to or from its tile cache per cycle")
-                .unit("bytes")
-                .range(1, 1024),
-            sim::field<&P::cache_tiles>("4x4-pixel tiles in each tile cache of a partition")
-                .unit("tiles")
-                .range(1, 65534),
-            sim::field<&P::queue>("Quads whose tiles are looked up ahead of execution").unit("quads").range(1, 4096),
-            sim::field<&P::reads_per_clk>("k-buffer reads of texture units accepted per cycle")
-                .unit("reads")
-                .range(1, 64),
-            sim::field<&P::read_latency>(
-                "From a texture unit's k-buffer read to its value, when the tile is in the cache")
-                .unit("cycles")
-                .range(1, 10000),
-            sim::field<&P::fast_clear>("Clears cost no memory traffic")};
-    }
-};
-static_assert(sim::fully_described<RopParams>);
-
-struct RopStats {
-    sim::Counter quads, fragments, depth_passed, depth_failed, stores, program_runs, program_cycles, insertions,
-        interlock_stalls, kbuffer_reads, kbuffer_reads_from_tiles, clears, copies;
-    sim::HighWater queue_max;
-    TileCacheStats depth_tiles, colour_tiles, kbuffer_tiles;
-
-    static constexpr auto fields() {
-        using S = RopStats;
-        return std::tuple{
-            sim::field<&S::quads>("Quads executed").unit("quads"),
-            sim::field<&S::fragments>("Fragments executed").unit("fragments"),
-            sim::field<&S::depth_passed>("Fragments that passed the depth test").unit("fragments"),
-            sim::field<&S::depth_failed>("Fragments that failed it").unit("fragments"),
-            sim::field<&S::stores>("Pixels stored with values computed by a shader").unit("fragments"),
-            sim::field<&S::program_runs>("Fragments run through the blender's program").unit("fragments"),
-            sim::field<&S::program_cycles>("Cycles the blenders worked").unit("cycles"),
-            sim::field<&S::insertions>("Program runs that changed their pixel").unit("fragments"),
-            sim::field<&S::interlock_stalls>("Quads that waited for a pixel inside the blender").unit("quads"),
-            sim::field<&S::kbuffer_reads>("k-buffer reads of texture units, one per quad").unit("reads"),
-            sim::field<&S::kbuffer_reads_from_tiles>("Of those, served from the tile cache").unit("reads"),
-            sim::field<&S::clears>("Bytes written by clears").unit("bytes"),
-            sim::field<&S::copies>("Bytes read and written by copies").unit("bytes"),
-            sim::field<&S::queue_max>("Most quads waiting for their tiles").unit("quads"),
-            sim::field<&S::depth_tiles>("Depth tile cache"),
-            sim::field<&S::colour_tiles>("Colour tile cache"),
-            sim::field<&S::kbuffer_tiles>("k-buffer tile cache")};
-    }
-};
-static_assert(sim::fully_described<RopStats>);
-
 /// What the fixed-function ROP reads and writes, in row order; each pixel is touched by the partition that owns it.
 struct FixedSurfaces {
     std::vector<DepthCode> depth;
     std::vector<QuadId> winner;    ///< ~0 = cleared
     std::vector<glm::vec4> colour; ///< linear RGBA, as the colour format holds it; empty when no pass writes colour
+    // Where a pass captures the farthest fragment, too.
+    std::vector<DepthCode> far_depth; ///< 0 = cleared
+    std::vector<QuadId> far_winner;
 };
 
 /// What one draw did to the output stage.
@@ -109,14 +50,16 @@ struct RopSurfaces {
     KBufferMemory* kbuffer = nullptr;
     StoreHistory* history = nullptr;
     QuadPayloads* payloads = nullptr;
+    FragmentLists* lists = nullptr;
 };
 
 /// What a partition is built for.
 struct RopShape {
-    std::uint32_t pipes = 1; ///< texture units that may read the k-buffer
-    std::size_t draws = 0;   ///< draws of the frame, for the counters per draw
-    bool depth = true;       ///< has a depth tile cache
-    bool colour = true;      ///< has a colour tile cache
+    std::uint32_t pipes = 1;         ///< texture units that may read the k-buffer
+    std::size_t draws = 0;           ///< draws of the frame, for the counters per draw
+    bool depth = true;               ///< has a depth tile cache
+    bool colour = true;              ///< has a colour tile cache
+    std::uint32_t kbuffer_tiles = 0; ///< tiles of its k-buffer tile cache, 0 to 65534
 };
 
 class Rop final : public sim::Component {
@@ -124,8 +67,10 @@ class Rop final : public sim::Component {
     sim::In<QuadTask> quads_in{*this, "quads_in"};
     sim::Out<MemoryRequest> memory_out{*this, "memory_out"};
     sim::In<MemoryResponse> memory_in{*this, "memory_in"};
-    sim::Out<Commit> commits_out{*this, "commits_out"}; ///< linked when someone waits for stores
-    std::deque<sim::In<KBufferRead>> reads_in;          ///< one per pipe, when shaders read the k-buffer
+    sim::Out<Commit> commits_out{*this, "commits_out"};       ///< linked when someone waits for stores
+    sim::Out<Commit> releases_out{*this, "releases_out"};     ///< the same stores, linked when shaders hold locks
+    sim::Out<LastEntryBound> bounds_out{*this, "bounds_out"}; ///< linked when fragments are rejected early
+    std::deque<sim::In<KBufferRead>> reads_in;                ///< one per pipe, when shaders read the k-buffer
     std::deque<sim::Out<KBufferReadDone>> reads_out;
     std::deque<sim::Out<LineInvalidation>> invalidations_out; ///< one per pipe, when texture caches are kept coherent
 
@@ -146,9 +91,10 @@ class Rop final : public sim::Component {
   private:
     static constexpr std::uint16_t no_entry = TileCache::none;
     static constexpr std::uint32_t stream_chunk = 256;
-    static constexpr std::uint32_t largest_request = 4096; ///< bytes; see MemoryRequest
-    static constexpr std::uint32_t request_room = 72;      ///< one step adds at most this many: all targets of one read
-    static constexpr std::uint32_t stream_window = 16;     ///< chunk reads outstanding
+    static constexpr std::uint64_t pool_address = std::uint64_t{1} << 42U; ///< of the lists' fragments
+    static constexpr std::uint32_t largest_request = 4096;                 ///< bytes; see MemoryRequest
+    static constexpr std::uint32_t request_room = 72;  ///< one step adds at most this many: all targets of one read
+    static constexpr std::uint32_t stream_window = 16; ///< chunk reads outstanding
 
     enum class Use : std::uint8_t { depth, colour, kbuffer };
     struct Queued {
@@ -196,6 +142,14 @@ class Rop final : public sim::Component {
     void write_colour(QuadId quad, std::uint32_t pixel, std::size_t at);
     std::uint32_t run_store(const Queued& queued);
     std::uint32_t run_blend(const Queued& queued);
+    std::uint32_t run_append(const Queued& queued);
+    void capture_farthest(QuadId quad, std::size_t at, DepthCode code);
+    bool hazardous_store(const Queued& queued, std::uint32_t block, std::uint32_t pixel, PixelVersion& oldest);
+    std::uint32_t unit_work(const float* pixel, const float* entry) const;
+    void note_bound(std::uint32_t block, std::uint32_t pixel);
+    float last_depth(std::uint32_t block, std::uint32_t pixel);
+    bool send_bounds();
+    bool kbuffer_on_chip(std::uint32_t tile) const;
     void apply_pending_blends();
     void finish(const Queued& queued, bool hazardous);
     std::uint32_t rops() const;
@@ -216,6 +170,9 @@ class Rop final : public sim::Component {
     FixedQueue<TileRead> tile_reads_;
     FixedQueue<KBufferRead> answers_;
     FixedQueue<std::uint32_t> invalidations_;
+    FixedQueue<LastEntryBound> bounds_;
+    float cleared_depth_ = 0;        ///< of the program's last entry
+    std::vector<float> tile_bounds_; ///< sent last, by tile; empty when nothing is rejected early by tile
     std::vector<ReadJob> jobs_;
     std::vector<std::uint32_t> free_jobs_;
     std::vector<std::uint32_t> unpublished_;   ///< tiles evicted while nothing may become visible

@@ -30,7 +30,7 @@ std::uint32_t Rop::tile_bytes(Use use) const {
     case Use::kbuffer:
         break;
     }
-    return 16 * pass_->program->bytes_per_pixel();
+    return 16 * (pass_->end == FragmentEnd::kbuffer_list ? plan_->lists.head_bytes : pass_->program->bytes_per_pixel());
 }
 
 std::uint64_t Rop::tile_address(Use use, std::uint32_t tile) const {
@@ -40,7 +40,7 @@ std::uint64_t Rop::tile_address(Use use, std::uint32_t tile) const {
 // Stores overwrite whole pixels under a byte mask; only what is combined with the stored value is fetched.
 bool Rop::fetches(Use use) const {
     return use == Use::depth || (use == Use::colour && pass_->blend != BlendMode::replace) ||
-           (use == Use::kbuffer && pass_->end == FragmentEnd::kbuffer_blend);
+           (use == Use::kbuffer && pass_->end != FragmentEnd::kbuffer_store);
 }
 
 void Rop::request(std::uint64_t address, std::uint32_t bytes, std::uint32_t tag, MemoryClient client, bool write,
@@ -112,6 +112,11 @@ void Rop::sample(const KBufferRead& read, std::uint64_t targets) {
     }
 }
 
+bool Rop::kbuffer_on_chip(std::uint32_t tile) const {
+    return plan_->shader.tile_memory ||
+           (plan_->shader.visibility == Visibility::rop_cache && kbuffer_tiles_.resident(tile));
+}
+
 // Takes reads of the texture units, round robin over the pipes. A tile in the cache answers at once when reads may see
 // it.
 bool Rop::accept_reads() {
@@ -129,8 +134,9 @@ bool Rop::accept_reads() {
         ++stats_.kbuffer_reads;
         ++accepted;
         next_pipe_ = (pipe + 1) % pipes;
-        if (plan_->shader.visibility == Visibility::rop_cache && kbuffer_tiles_.resident(tile)) {
-            tile_reads_.push({read, cycle() + params_.read_latency});
+        if (kbuffer_on_chip(tile)) {
+            const std::uint32_t own = plan_->shader.read_latency;
+            tile_reads_.push({read, cycle() + (own != 0 ? own : params_.read_latency)});
             ++stats_.kbuffer_reads_from_tiles;
             continue;
         }
@@ -200,9 +206,10 @@ bool Rop::write_back_next() {
     if (!writing_back_) return false;
     if (requests_.size() + request_room > requests_.capacity() || invalidations_.size() + 8 > invalidations_.capacity())
         return false;
-    while (write_back_at_ < 3 * params_.cache_tiles) {
-        const auto use = static_cast<Use>(write_back_at_ / params_.cache_tiles);
-        const auto entry = static_cast<std::uint16_t>(write_back_at_ % params_.cache_tiles);
+    const std::uint32_t tiles = std::max<std::uint32_t>(params_.cache_tiles, kbuffer_tiles_.size());
+    while (write_back_at_ < 3 * tiles) {
+        const auto use = static_cast<Use>(write_back_at_ / tiles);
+        const auto entry = static_cast<std::uint16_t>(write_back_at_ % tiles);
         ++write_back_at_;
         if (entry >= cache(use).size() || !cache(use).dirty(entry)) continue;
         clean(use, entry);

@@ -20,6 +20,7 @@ std::uint32_t Rop::run_depth_colour(const Queued& queued) {
         if ((queued.task.mask >> pixel & 1) == 0) continue;
         const std::size_t at = static_cast<std::size_t>(quad.y + pixel / 2) * pass_->layout.width + quad.x + pixel % 2;
         const DepthCode code = depth_code(pass_->depth_format, pass_->stream->depths[queued.task.quad][pixel]);
+        if (pass_->farthest) capture_farthest(queued.task.quad, at, code);
         if (pass_->depth.test && !depth_less(code, surfaces_.fixed->depth[at])) {
             ++stats_.depth_failed;
             continue;
@@ -30,13 +31,20 @@ std::uint32_t Rop::run_depth_colour(const Queued& queued) {
         surfaces_.fixed->winner[at] = queued.task.quad;
         if (pass_->colour_write && !surfaces_.fixed->colour.empty()) write_colour(queued.task.quad, pixel, at);
     }
-    if (passed != 0 && pass_->depth.write) depth_tiles_.mark_dirty(queued.entry[0]);
+    if ((passed != 0 || pass_->farthest) && pass_->depth.write) depth_tiles_.mark_dirty(queued.entry[0]);
     if (passed != 0 && pass_->colour_write) colour_tiles_.mark_dirty(queued.entry[1]);
     const auto fragments = static_cast<std::uint32_t>(std::popcount(queued.task.mask));
     const std::uint32_t blended = pass_->blend == BlendMode::replace ? 1 : 2; // reads the colour, too
     return cycles_for((pass_->depth.test ? fragments * pass_->depth_bytes : 0) +
                       (pass_->depth.write ? passed * pass_->depth_bytes : 0) +
                       (pass_->colour_write ? passed * blended * pass_->colour_bytes : 0));
+}
+
+// MAX blending of depths keeps the farthest; of equal ones the last, as it lies behind the others.
+void Rop::capture_farthest(QuadId quad, std::size_t at, DepthCode code) {
+    if (surfaces_.fixed->far_winner[at] != ~QuadId{0} && code < surfaces_.fixed->far_depth[at]) return;
+    surfaces_.fixed->far_depth[at] = code;
+    surfaces_.fixed->far_winner[at] = quad;
 }
 
 void Rop::write_colour(QuadId quad, std::uint32_t pixel, std::size_t at) {
@@ -46,30 +54,45 @@ void Rop::write_colour(QuadId quad, std::uint32_t pixel, std::size_t at) {
     stored = write_through(pass_->frame->colour_format, pass_->blend, source, stored);
 }
 
+// Books the store of one pixel; `oldest` becomes the version of the oldest render target it was computed from.
+bool Rop::hazardous_store(const Queued& queued, std::uint32_t block, std::uint32_t pixel, PixelVersion& oldest) {
+    const std::uint32_t slot = queued.task.slot;
+    oldest = surfaces_.payloads->version(slot, pixel, 0);
+    std::uint32_t newest = oldest.stores;
+    for (std::uint32_t target = 1; target < pass_->program->targets(); ++target) {
+        const PixelVersion read = surfaces_.payloads->version(slot, pixel, target);
+        newest = std::max(newest, read.stores);
+        if (read.stores < oldest.stores) oldest = read;
+    }
+    const std::uint32_t stored = surfaces_.kbuffer->latest_version(block, pixel).stores;
+    // Where no order is asked for, a predecessor is whoever has stored before.
+    const std::uint32_t order = plan_->order_free ? stored : queued.task.order[pixel];
+    const bool hazard = ledger_.book(block, pixel, queued.task.quad,
+                                     {order, oldest.stores, newest, (*surfaces_.payloads)[slot].last_read});
+    if (plan_->shader.version_bits != 0) {
+        const std::uint32_t mask = (1U << plan_->shader.version_bits) - 1;
+        const bool differs = ((stored ^ oldest.stores) & mask) != 0 || ((stored ^ newest) & mask) != 0;
+        if (differs) ++stats_.hazards_detected;
+        if (hazard && !differs) ++stats_.hazards_overlooked;
+    }
+    return hazard;
+}
+
 std::uint32_t Rop::run_store(const Queued& queued) {
     const Quad& quad = pass_->stream->quads[queued.task.quad];
     const std::uint32_t block = pass_->layout.block_of(quad.x, quad.y);
     const std::uint32_t tile = SurfaceLayout::tile_of_block(block);
     const std::uint32_t targets = pass_->program->targets();
     const bool rop_view = plan_->shader.visibility == Visibility::rop_cache;
-    const std::uint32_t slot = queued.task.slot;
     bool hazardous = false;
     std::uint32_t fragments = 0;
     for (std::uint32_t pixel = 0; pixel < 4; ++pixel) {
         if ((queued.task.mask >> pixel & 1) == 0) continue;
-        PixelVersion oldest = surfaces_.payloads->version(slot, pixel, 0);
-        std::uint32_t newest = oldest.stores;
-        for (std::uint32_t target = 1; target < targets; ++target) {
-            const PixelVersion read = surfaces_.payloads->version(slot, pixel, target);
-            newest = std::max(newest, read.stores);
-            if (read.stores < oldest.stores) oldest = read;
-        }
-        hazardous |=
-            ledger_.book(block, pixel, queued.task.quad,
-                         {queued.task.order[pixel], oldest.stores, newest, (*surfaces_.payloads)[slot].last_read});
+        PixelVersion oldest;
+        hazardous |= hazardous_store(queued, block, pixel, oldest);
         ledger_.enter(block, pixel, queued.task.quad, queued.task.retired, cycle(),
                       rop_view ? cycle() + 1 : StoreHistory::never);
-        const float* values = surfaces_.payloads->values(slot, pixel);
+        const float* values = surfaces_.payloads->values(queued.task.slot, pixel);
         std::copy(values, values + std::size_t{4} * targets, surfaces_.kbuffer->latest(block, pixel));
         PixelVersion& version = surfaces_.kbuffer->latest_version(block, pixel);
         version = {version.stores + 1, oldest.chain + 1};
@@ -88,63 +111,12 @@ std::uint32_t Rop::run_store(const Queued& queued) {
     return cycles_for(fragments * pass_->program->bytes_per_pixel());
 }
 
-void Rop::apply_pending_blends() {
-    const std::size_t floats = surfaces_.kbuffer->floats_per_pixel();
-    std::size_t done = 0;
-    while (done < pending_blends_.size() && pending_blends_[done].written <= cycle()) {
-        const PendingBlend& blend = pending_blends_[done];
-        const float* from = pending_values_.data() + done * floats;
-        std::copy(from, from + floats, surfaces_.kbuffer->latest(blend.block, blend.pixel));
-        surfaces_.kbuffer->latest_version(blend.block, blend.pixel) = blend.version;
-        ++done;
-    }
-    if (done == 0) return;
-    pending_blends_.erase(pending_blends_.begin(), pending_blends_.begin() + static_cast<std::ptrdiff_t>(done));
-    pending_values_.erase(pending_values_.begin(),
-                          pending_values_.begin() + static_cast<std::ptrdiff_t>(done * floats));
-}
-
-std::uint32_t Rop::run_blend(const Queued& queued) {
-    const Quad& quad = pass_->stream->quads[queued.task.quad];
-    const std::uint32_t block = pass_->layout.block_of(quad.x, quad.y);
-    const auto fragments = static_cast<std::uint32_t>(std::popcount(queued.task.mask));
-    const std::uint32_t cycles = blender_->cycles_per_quad(fragments);
-    const sim::Cycle written = blender_->enter(block, queued.task.mask, cycle(), cycles);
-    const bool delayed = blender_->site().interlock == BlendInterlock::none;
-    const ModifyProgram& program = *pass_->program;
-    const std::size_t floats = program.floats_per_pixel();
-    bool hazardous = false;
-    for (std::uint32_t pixel = 0; pixel < 4; ++pixel) {
-        if ((queued.task.mask >> pixel & 1) == 0) continue;
-        float entry[4];
-        program.make_entry(pass_->stream->fragment(queued.task.quad, pixel), entry);
-        float* stored = surfaces_.kbuffer->latest(block, pixel);
-        PixelVersion& version = surfaces_.kbuffer->latest_version(block, pixel);
-        const std::uint32_t order = queued.task.order[pixel];
-        hazardous |= ledger_.book(block, pixel, queued.task.quad, {order, version.stores, version.stores, cycle()});
-        ledger_.enter(block, pixel, queued.task.quad, queued.task.retired, cycle(), delayed ? written : cycle() + 1);
-        ++stats_.program_runs;
-        if (!delayed) {
-            if (program.insert(stored, entry)) ++stats_.insertions;
-            version = {order + 1, version.chain + 1};
-            continue;
-        }
-        pending_blends_.push_back({block, pixel, {order + 1, version.chain + 1}, written});
-        const std::size_t value = pending_values_.size();
-        pending_values_.insert(pending_values_.end(), stored, stored + floats);
-        if (program.insert(pending_values_.data() + value, entry)) ++stats_.insertions;
-    }
-    if (delayed) wake_at(written);
-    stats_.program_cycles += cycles;
-    kbuffer_tiles_.mark_dirty(queued.entry[2]);
-    finish(queued, hazardous);
-    return cycles;
-}
-
 void Rop::finish(const Queued& queued, bool hazardous) {
     draw_outputs_[pass_->draw_of(queued.task.quad)].hazards += hazardous ? 1 : 0;
     if (commits_out.connected())
         commits_out.send({queued.task.slot, queued.task.quad, queued.task.mask, QuadKind::quad});
+    if (releases_out.connected())
+        releases_out.send({queued.task.slot, queued.task.quad, queued.task.mask, QuadKind::quad});
 }
 
 } // namespace pipeline

@@ -1,10 +1,63 @@
 #include "pipeline/raster/early_depth_test.hpp"
 
+#include <algorithm>
 #include <bit>
+#include <limits>
+#include <utility>
 
 namespace pipeline {
 
-std::uint8_t EarlyDepthTest::surviving(const QuadTask& task) const {
+namespace {
+
+/// Leaves the pixels of `surviving` in the quad; returns how many it takes out.
+std::uint64_t reject(QuadTask& task, std::uint8_t surviving) {
+    return static_cast<std::uint64_t>(std::popcount(std::exchange(task.mask, surviving)) - std::popcount(surviving));
+}
+
+} // namespace
+
+EarlyDepthTest::EarlyDepthTest(sim::Context context, const EarlyDepthParams& params, const PassContext& pass,
+                               std::uint32_t partitions)
+    : Component(std::move(context)), params_(params), pass_(&pass) {
+    port_names_.reserve(partitions);
+    for (std::uint32_t rop = 0; rop < partitions; ++rop)
+        bounds_in.emplace_back(*this, port_names_.emplace_back("bounds" + std::to_string(rop) + "_in"));
+    begin_pass();
+}
+
+void EarlyDepthTest::begin_pass() {
+    if (!bounds_in.empty())
+        last_entry_.assign(std::size_t{4} * pass_->layout.blocks(), std::numeric_limits<float>::infinity());
+}
+
+bool EarlyDepthTest::take_bounds() {
+    bool progress = false;
+    for (sim::In<LastEntryBound>& port : bounds_in)
+        while (port.peek() != nullptr) {
+            const LastEntryBound bound = port.receive();
+            const std::size_t first =
+                bound.whole_tile ? std::size_t{16} * bound.block : std::size_t{4} * bound.block + bound.pixel;
+            const std::size_t pixels = bound.whole_tile ? 16 : 1;
+            for (std::size_t at = first; at < first + pixels; ++at)
+                last_entry_[at] = std::min(last_entry_[at], bound.depth);
+            ++stats_.bounds;
+            progress = true;
+        }
+    return progress;
+}
+
+std::uint8_t EarlyDepthTest::before_last_entry(const QuadTask& task) const {
+    if (last_entry_.empty() || pass_->end != FragmentEnd::kbuffer_blend) return task.mask;
+    const Quad& quad = pass_->stream->quads[task.quad];
+    const std::size_t first = std::size_t{4} * pass_->layout.block_of(quad.x, quad.y);
+    std::uint8_t mask = task.mask;
+    for (std::uint32_t pixel = 0; pixel < 4; ++pixel)
+        if (pass_->stream->depths[task.quad][pixel] >= last_entry_[first + pixel])
+            mask = static_cast<std::uint8_t>(mask & ~(1U << pixel));
+    return mask;
+}
+
+std::uint8_t EarlyDepthTest::before_surface(const QuadTask& task) const {
     if (pass_->read_only_depth == nullptr) return task.mask;
     const Quad& quad = pass_->stream->quads[task.quad];
     std::uint8_t mask = 0;
@@ -19,18 +72,16 @@ std::uint8_t EarlyDepthTest::surviving(const QuadTask& task) const {
 }
 
 sim::Activity EarlyDepthTest::tick() {
-    bool progress = false;
+    bool progress = take_bounds();
     for (std::uint32_t n = 0; n < params_.quads_per_clk; ++n) {
         const QuadTask* input = quads_in.peek();
         if (input == nullptr) break;
         if (!quads_out.ready()) return progress ? sim::Activity::busy : sim::Activity::blocked;
         QuadTask task = quads_in.receive();
-        const auto before = static_cast<std::uint64_t>(std::popcount(task.mask));
-        task.mask = surviving(task);
-        const auto after = static_cast<std::uint64_t>(std::popcount(task.mask));
         ++stats_.quads;
-        stats_.fragments += before;
-        stats_.fragments_rejected += before - after;
+        stats_.fragments += static_cast<std::uint64_t>(std::popcount(task.mask));
+        stats_.fragments_rejected += reject(task, before_surface(task));
+        stats_.fragments_beyond += reject(task, before_last_entry(task));
         if (task.mask != 0)
             quads_out.send(task);
         else

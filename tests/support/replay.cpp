@@ -2,6 +2,7 @@
 
 #include "sim/check.hpp"
 #include "tests/support/paths.hpp"
+#include "traces/submission.hpp"
 
 #include <fmt/format.h>
 
@@ -29,8 +30,11 @@ pipeline::RunResult Replay::run(const std::string& design, const std::vector<std
     models::check_design_sections(config);
     const auto model = models::make_design(design, config);
     config.expect_all_used();
-    pipeline::Machine machine(gpu, frame, streams, *model, options);
-    return machine.run(reference);
+    if (!model->submission().changes()) return pipeline::Machine(gpu, frame, streams, *model, options).run(reference);
+    const pipeline::Frame other = traces::submitted(frame, model->submission());
+    const auto other_streams = pipeline::rasterize_frame(other);
+    return pipeline::Machine(gpu, other, other_streams, *model, options)
+        .run(pipeline::run_reference(other, other_streams));
 }
 
 const pipeline::FragmentStream& Replay::kbuffer_stream() const {

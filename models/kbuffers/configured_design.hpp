@@ -1,0 +1,38 @@
+// What all designs do alike: their name, their parameters, their row in the list.
+#pragma once
+
+#include "models/kbuffers/library.hpp"
+#include "sim/described_json.hpp"
+
+namespace models {
+
+/// `Design` has static `name` and `text`, and takes its `Params`.
+template <class Design, sim::Described Params>
+class ConfiguredDesign : public pipeline::KBufferDesign {
+  public:
+    explicit ConfiguredDesign(const Params& params) : params_(params) {}
+
+    std::string_view id() const override { return Design::name; }
+    std::string_view summary() const override { return Design::text; }
+    std::string refuses(const pipeline::ModifyProgram&) const override { return {}; }
+    nlohmann::ordered_json parameters() const override { return sim::to_json(params_); }
+    /// Hardware that is there anyway.
+    nlohmann::ordered_json area(const pipeline::ModifyProgram&, const pipeline::View&, std::uint32_t) const override {
+        return {{"added_state_bits", 0}, {"added_comparators", 0}, {"added_alu_lanes", 0}};
+    }
+
+    static DesignInfo info() {
+        return {Design::name, Design::text,
+                [](sim::Config& config) -> std::unique_ptr<pipeline::KBufferDesign> {
+                    Params params;
+                    config.read(Design::name, params);
+                    return std::make_unique<Design>(params);
+                },
+                [] { return sim::describe<Params>(Design::name); }};
+    }
+
+  protected:
+    Params params_;
+};
+
+} // namespace models

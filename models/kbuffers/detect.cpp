@@ -1,0 +1,59 @@
+// Hazards detected and counted, not prevented: a version number is stored with each pixel, read with it, and compared
+// when the shader's result is stored. What an application does about it (draw again, hold back) is not modelled.
+//
+// Numbers that wrap around overlook a hazard now and then; the counters say how often. Source: specification 004,
+// section 8; after Zhang, "Memory-hazard-aware k-buffer algorithm" (TVCG 2014), who puts error-detecting codes into the
+// entries.
+#include "models/kbuffers/configured_design.hpp"
+
+namespace models {
+
+namespace {
+
+using namespace pipeline;
+
+struct DetectParams {
+    std::uint32_t version_bits = 8;
+    Visibility visibility = Visibility::writeback;
+    TextureCoherence tex_coherence = TextureCoherence::invalidate_on_draw;
+
+    static constexpr auto fields() {
+        using P = DetectParams;
+        return std::tuple{
+            sim::field<&P::version_bits>("Bits of the version number of a pixel").unit("bits").range(1, 31),
+            sim::field<&P::visibility>("When a store becomes visible to a texture read"),
+            sim::field<&P::tex_coherence>("What drops stale k-buffer lines from the texture caches")};
+    }
+};
+static_assert(sim::fully_described<DetectParams>);
+
+class Detect final : public ConfiguredDesign<Detect, DetectParams> {
+  public:
+    static constexpr std::string_view name = "detect";
+    static constexpr std::string_view text = "existing hardware that detects and counts hazards, and lets them happen";
+
+    using ConfiguredDesign::ConfiguredDesign;
+
+    KBufferPlan plan(const ModifyProgram&, const View&) const override {
+        KBufferPlan plan;
+        plan.site = UpdateSite::fragment_shader;
+        plan.shader.visibility = params_.visibility;
+        plan.shader.coherence = params_.tex_coherence;
+        plan.shader.version_bits = params_.version_bits;
+        return plan;
+    }
+    // A number per pixel of the surface, one with each quad's pixels in flight, one comparator per ROP.
+    nlohmann::ordered_json area(const ModifyProgram&, const View& view, std::uint32_t quads_in_flight) const override {
+        const std::uint64_t numbers = std::uint64_t{view.width} * view.height + std::uint64_t{4} * quads_in_flight;
+        return {{"added_state_bits", numbers * params_.version_bits},
+                {"added_comparators", 1},
+                {"added_alu_lanes", 0},
+                {"per", "GPU; comparators per ROP"}};
+    }
+};
+
+} // namespace
+
+DesignInfo detect_design() { return Detect::info(); }
+
+} // namespace models

@@ -1,0 +1,80 @@
+// Framebuffer fetch: the k-buffer lies in on-chip tile memory that the shader reads and writes, ordered per pixel;
+// memory is touched when a finished tile is stored, and a tile that was cleared is not loaded.
+//
+// The whole surface counts as on chip. Not modelled: binning of the triangles, which a tiled GPU needs to visit its
+// tiles one after the other. Source: specification 004, section 8 (framebuffer fetch, pixel local storage, image
+// blocks).
+#include "models/kbuffers/configured_design.hpp"
+
+#include <fmt/format.h>
+
+namespace models {
+
+namespace {
+
+using namespace pipeline;
+
+struct FramebufferFetchParams {
+    std::uint32_t bytes_per_pixel = 128;
+    std::uint32_t read_latency = 8;
+    std::uint32_t lock_latency = 2;
+    std::uint32_t grants_per_clk = 6;
+
+    static constexpr auto fields() {
+        using P = FramebufferFetchParams;
+        return std::tuple{sim::field<&P::bytes_per_pixel>("Tile memory of a pixel; programs that need more are refused")
+                              .unit("bytes")
+                              .range(16, 1024),
+                          sim::field<&P::read_latency>("From a read's arrival at the tile memory to its value")
+                              .unit("cycles")
+                              .range(1, 1000),
+                          sim::field<&P::lock_latency>("Cycles from a pipe to the order unit, and back")
+                              .unit("cycles")
+                              .range(1, 1000),
+                          sim::field<&P::grants_per_clk>("Quads let through per cycle").unit("quads").range(1, 64)};
+    }
+};
+static_assert(sim::fully_described<FramebufferFetchParams>);
+
+class FramebufferFetch final : public ConfiguredDesign<FramebufferFetch, FramebufferFetchParams> {
+  public:
+    static constexpr std::string_view name = "framebuffer-fetch";
+    static constexpr std::string_view text = "shader reads and writes on-chip tile memory, ordered per pixel";
+
+    using ConfiguredDesign::ConfiguredDesign;
+
+    std::string refuses(const ModifyProgram& program) const override {
+        if (program.bytes_per_pixel() <= params_.bytes_per_pixel) return {};
+        return fmt::format("it needs {} bytes per pixel, and tile memory has {} (framebuffer-fetch.bytes_per_pixel)",
+                           program.bytes_per_pixel(), params_.bytes_per_pixel);
+    }
+    KBufferPlan plan(const ModifyProgram&, const View&) const override {
+        KBufferPlan plan;
+        plan.site = UpdateSite::fragment_shader;
+        plan.shader.visibility = Visibility::rop_cache;
+        plan.shader.coherence = TextureCoherence::none;
+        plan.shader.bypass_l1 = true;
+        plan.shader.atomic_reads = true;
+        plan.shader.tile_memory = true;
+        plan.shader.read_latency = params_.read_latency;
+        plan.shader.critical_section = CriticalSection::ordered;
+        plan.shader.lock_latency = params_.lock_latency;
+        plan.shader.grants_per_clk = params_.grants_per_clk;
+        plan.retirement = Retirement::out_of_order;
+        return plan;
+    }
+    // Of a tiled GPU: memory of one tile of 32x32 pixels, and a place in the order unit for each quad in flight.
+    nlohmann::ordered_json area(const ModifyProgram&, const View&, std::uint32_t quads_in_flight) const override {
+        return {{"added_state_bits",
+                 std::uint64_t{1024} * params_.bytes_per_pixel * 8 + std::uint64_t{quads_in_flight} * 42},
+                {"added_comparators", quads_in_flight},
+                {"added_alu_lanes", 0},
+                {"per", "GPU with one tile of 32x32 pixels"}};
+    }
+};
+
+} // namespace
+
+DesignInfo framebuffer_fetch_design() { return FramebufferFetch::info(); }
+
+} // namespace models

@@ -1,0 +1,72 @@
+// Fragment shader interlock: the shader marks the part that reads, modifies and stores its pixel, and the GPU lets one
+// quad at a time into it, in the order of the primitives or in any. All code before that part overlaps freely. Stores
+// go straight to memory's side, so a section takes a read and a store, not the way through the reorder buffer.
+//
+// Source: specification 004, section 8 (pixel synchronisation 2013, fragment_shader_interlock).
+#include "models/kbuffers/configured_design.hpp"
+
+namespace models {
+
+namespace {
+
+using namespace pipeline;
+
+struct InterlockParams {
+    bool ordered = true;
+    LockArea area = LockArea::pixel;
+    std::uint32_t lock_latency = 4;
+    std::uint32_t grants_per_clk = 6;
+
+    static constexpr auto fields() {
+        using P = InterlockParams;
+        return std::tuple{
+            sim::field<&P::ordered>("Quads enter in the order of their primitives; otherwise one at a time in any"),
+            sim::field<&P::area>("What one critical section locks"),
+            sim::field<&P::lock_latency>("Cycles from a pipe to the lock table, and back")
+                .unit("cycles")
+                .range(1, 1000),
+            sim::field<&P::grants_per_clk>("Critical sections entered per cycle").unit("quads").range(1, 64)};
+    }
+};
+static_assert(sim::fully_described<InterlockParams>);
+
+class Interlock final : public ConfiguredDesign<Interlock, InterlockParams> {
+  public:
+    static constexpr std::string_view name = "interlock";
+    static constexpr std::string_view text = "critical section in the fragment shader, ordered or not";
+
+    using ConfiguredDesign::ConfiguredDesign;
+
+    std::string refuses(const ModifyProgram& program) const override {
+        return !params_.ordered && program.order_need() == OrderNeed::primitive_order
+                   ? "it needs the order of the primitives, and interlock.ordered is false"
+                   : "";
+    }
+    KBufferPlan plan(const ModifyProgram&, const View&) const override {
+        KBufferPlan plan;
+        plan.site = UpdateSite::fragment_shader;
+        plan.shader.visibility = Visibility::rop_cache;
+        plan.shader.coherence = TextureCoherence::none;
+        plan.shader.bypass_l1 = true;
+        plan.shader.critical_section = params_.ordered ? CriticalSection::ordered : CriticalSection::unordered;
+        plan.shader.lock_area = params_.area;
+        plan.shader.lock_latency = params_.lock_latency;
+        plan.shader.grants_per_clk = params_.grants_per_clk;
+        plan.retirement = Retirement::out_of_order;
+        plan.order_free = !params_.ordered;
+        return plan;
+    }
+    // A place, a mask and a thread number for each quad in flight, which a release is compared with.
+    nlohmann::ordered_json area(const ModifyProgram&, const View&, std::uint32_t quads_in_flight) const override {
+        return {{"added_state_bits", std::uint64_t{quads_in_flight} * (26 + 4 + 12)},
+                {"added_comparators", quads_in_flight},
+                {"added_alu_lanes", 0},
+                {"per", "GPU"}};
+    }
+};
+
+} // namespace
+
+DesignInfo interlock_design() { return Interlock::info(); }
+
+} // namespace models

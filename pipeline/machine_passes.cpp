@@ -1,0 +1,159 @@
+// k-buffer passes of designs that do not modify pixels in place: several geometry passes with fixed-function tests, and
+// lists of fragments that a later pass puts into the entries.
+#include "pipeline/machine_units.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <utility>
+
+namespace pipeline {
+
+std::uint32_t Machine::geometry_passes(const KBufferPlan& plan, const ModifyProgram& program) {
+    if (plan.site == UpdateSite::lists) return plan.lists.passes;
+    if (plan.site != UpdateSite::passes) return 1;
+    return plan.passes.passes != 0 ? plan.passes.passes : program.k();
+}
+
+// W3: per layer clear, draw with the test against the layers before, copy the depth for the next one.
+void Machine::draw_layers(const Pass& pass, const FragmentStream& stream) {
+    PassContext& context = units_->pass;
+    const ModifyProgram& program = *frame_->program;
+    const std::size_t pixels = std::size_t{frame_->view.width} * frame_->view.height;
+    const bool both_ends = plan_.passes.capture == PassCapture::nearest_farthest;
+    units_->drawn = std::exchange(units_->fixed, {});
+    context.read_only_depth = pass.depth.test ? &units_->drawn.depth : nullptr;
+    context.end = FragmentEnd::depth_colour;
+    context.depth = {true, true};
+    context.blend = BlendMode::replace;
+    context.depth_format = plan_.passes.depth_format;
+    // From both ends: two depths, two colours, both blended with MAX.
+    context.depth_bytes = both_ends ? 8 : depth_bytes(context.depth_format);
+    context.colour_write = program.needs_colour();
+    context.colour_bytes = both_ends ? 32 : 16; // RGBA32F, as the k-buffer's entries
+    context.farthest = both_ends;
+    clear_layers();
+    std::vector<PeeledLayer> near_layers, far_layers;
+    const std::uint32_t passes = geometry_passes(plan_, program);
+    near_layers.reserve(passes);
+    far_layers.reserve(passes);
+    for (std::uint32_t i = 0; i < passes; ++i) {
+        begin(fmt::format("{} layer {}", pass.name, i));
+        units_->fixed.depth.assign(pixels, farthest_depth(context.depth_format));
+        units_->fixed.winner.assign(pixels, ~QuadId{0});
+        if (both_ends) {
+            units_->fixed.far_depth.assign(pixels, 0);
+            units_->fixed.far_winner.assign(pixels, ~QuadId{0});
+        }
+        if (!gpu_.rop.fast_clear)
+            stream_surface(0, pixels * (context.depth_bytes + (context.colour_write ? context.colour_bytes : 0)));
+        if (plan_.passes.capture == PassCapture::range) {
+            context.range = program.range(i);
+        } else if (i > 0) {
+            context.behind = &near_layers.back();
+            context.before = both_ends ? &far_layers.back() : nullptr;
+        }
+        run_draw(stream);
+        near_layers.push_back({units_->fixed.depth, units_->fixed.winner});
+        if (both_ends) far_layers.push_back({units_->fixed.far_depth, units_->fixed.far_winner});
+        const bool read_again = i + 1 < passes && plan_.passes.capture != PassCapture::range;
+        if (read_again) stream_surface(pixels * context.depth_bytes, pixels * context.depth_bytes);
+        end();
+    }
+    for (std::size_t pixel = 0; pixel < pixels; ++pixel) keep_layers(pixel, near_layers, far_layers, stream);
+    context.behind = context.before = nullptr;
+    context.range.reset();
+    context.farthest = false;
+    units_->fixed = std::move(units_->drawn);
+}
+
+void Machine::clear_layers() {
+    const ModifyProgram& program = *frame_->program;
+    const std::size_t floats = program.floats_per_pixel();
+    layers_.resize(std::size_t{frame_->view.width} * frame_->view.height * floats);
+    for (std::size_t at = 0; at < layers_.size(); at += floats) program.clear(layers_.data() + at);
+}
+
+// The captured fragments of a pixel become its entries: those from the front, then those from behind, the nearest of
+// them first. A fragment captured from both ends counts once.
+void Machine::keep_layers(std::size_t pixel, const std::vector<PeeledLayer>& near_layers,
+                          const std::vector<PeeledLayer>& far_layers, const FragmentStream& stream) {
+    const bool ranges = plan_.passes.capture == PassCapture::range;
+    std::vector<QuadId> order;
+    for (const PeeledLayer& layer : near_layers)
+        if (layer.order[pixel] != ~QuadId{0} || ranges) order.push_back(layer.order[pixel]);
+    for (auto layer = far_layers.rbegin(); layer != far_layers.rend(); ++layer)
+        if (layer->order[pixel] != ~QuadId{0} &&
+            std::find(order.begin(), order.end(), layer->order[pixel]) == order.end())
+            order.push_back(layer->order[pixel]);
+    const std::size_t kept = std::min<std::size_t>(order.size(), frame_->program->k());
+    for (std::size_t entry = 0; entry < kept; ++entry)
+        if (order[entry] != ~QuadId{0}) keep_entry(pixel, static_cast<std::uint32_t>(entry), order[entry], stream);
+}
+
+void Machine::keep_entry(std::size_t pixel, std::uint32_t entry, QuadId id, const FragmentStream& stream) {
+    const ModifyProgram& program = *frame_->program;
+    const Quad& quad = stream.quads[id];
+    const std::size_t x = pixel % frame_->view.width, y = pixel / frame_->view.width;
+    program.make_entry(stream.fragment(id, (y - quad.y) * 2 + (x - quad.x)),
+                       layers_.data() + pixel * program.floats_per_pixel() +
+                           std::size_t{entry} * program.floats_per_entry());
+}
+
+// All fragments are kept in order of arrival, which is that of the primitives; then one pass over the screen runs the
+// program on each pixel's list.
+void Machine::draw_lists(const Pass& pass, const FragmentStream& stream) {
+    PassContext& context = units_->pass;
+    const ListsSite& site = plan_.lists;
+    const std::size_t pixels = std::size_t{frame_->view.width} * frame_->view.height;
+    context.read_only_depth = pass.depth.test ? &units_->fixed.depth : nullptr;
+    context.end = FragmentEnd::kbuffer_list;
+    for (std::uint32_t i = 0; i < site.passes; ++i) {
+        begin(site.passes == 1 ? pass.name : fmt::format("{} pass {}", pass.name, i));
+        context.first_kept = i * site.per_pixel;
+        if (i > 0) stream_surface(0, pixels * site.head_bytes);
+        run_draw(stream);
+        end();
+    }
+    begin(pass.name + " sort");
+    clear_layers();
+    const std::uint64_t kept = run_lists(stream);
+    stream_surface(kept * site.read_bytes + pixels * site.head_bytes, pixels * frame_->program->bytes_per_pixel());
+    end();
+}
+
+// Returns how many fragments the lists hold.
+std::uint64_t Machine::run_lists(const FragmentStream& stream) {
+    const ModifyProgram& program = *frame_->program;
+    const SurfaceLayout& layout = units_->pass.layout;
+    std::uint64_t kept = 0;
+    float entry[largest_entry];
+    for (std::uint32_t y = 0; y < layout.height; ++y)
+        for (std::uint32_t x = 0; x < layout.width; ++x) {
+            const std::uint32_t lane = y % 2 * 2 + x % 2;
+            float* pixel = layers_.data() + (std::size_t{y} * layout.width + x) * program.floats_per_pixel();
+            for (const QuadId quad : units_->lists->fragments(layout.block_of(x, y), lane)) {
+                program.make_entry(stream.fragment(quad, lane), entry);
+                program.insert(pixel, entry);
+                ++kept;
+            }
+        }
+    return kept;
+}
+
+// Whether more fragments came to a pixel than the design can hold; what it shows there is not meant to be right.
+bool Machine::overflowed(std::size_t pixel, std::uint32_t fragments) const {
+    if (!frame_->needs.kbuffer) return false;
+    const auto x = static_cast<std::uint32_t>(pixel % frame_->view.width),
+               y = static_cast<std::uint32_t>(pixel / frame_->view.width);
+    if (units_->lists) {
+        const ListsSite& site = plan_.lists;
+        return units_->lists->overflowed(units_->pass.layout.block_of(x, y), y % 2 * 2 + x % 2) ||
+               (site.per_pixel != 0 && fragments > site.per_pixel * site.passes);
+    }
+    if (plan_.site != UpdateSite::passes || plan_.passes.capture == PassCapture::range) return false;
+    const std::uint32_t passes = geometry_passes(plan_, *frame_->program);
+    if (passes >= frame_->program->k()) return false;
+    return fragments > passes * (plan_.passes.capture == PassCapture::nearest_farthest ? 2 : 1);
+}
+
+} // namespace pipeline

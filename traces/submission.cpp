@@ -1,0 +1,174 @@
+#include "traces/submission.hpp"
+
+#include "pipeline/functional/vertex_fetch.hpp"
+#include "sim/check.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+namespace traces {
+
+namespace {
+
+using pipeline::Draw;
+using pipeline::Frame;
+using pipeline::Geometry;
+using pipeline::Resources;
+
+struct SortedTriangle {
+    std::uint32_t draw = 0;
+    std::uint32_t instance = 0;
+    std::array<std::uint32_t, 3> vertices{};
+    std::uint32_t key = 0; ///< grows with the distance from the eye
+};
+
+// Floats as integers in the same order: all bits of negative ones turned, the sign of the others (A8, step 2).
+std::uint32_t ordered_bits(float value) {
+    const auto bits = std::bit_cast<std::uint32_t>(value);
+    return (bits & 0x80000000U) != 0 ? ~bits : bits | 0x80000000U;
+}
+
+// Least significant digit first, three digits of 11 bits: stable and linear (A8, step 3).
+void radix_sort(std::vector<SortedTriangle>& triangles) {
+    std::vector<SortedTriangle> other(triangles.size());
+    for (std::uint32_t shift = 0; shift < 33; shift += 11) {
+        std::array<std::size_t, 2049> begin{};
+        for (const SortedTriangle& triangle : triangles) ++begin[(triangle.key >> shift & 2047U) + 1];
+        for (std::size_t digit = 1; digit < begin.size(); ++digit) begin[digit] += begin[digit - 1];
+        for (const SortedTriangle& triangle : triangles) other[begin[triangle.key >> shift & 2047U]++] = triangle;
+        triangles.swap(other);
+    }
+}
+
+void add_triangles(std::vector<SortedTriangle>& triangles, const Frame& frame, std::uint32_t number) {
+    const Draw& draw = frame.draws[number];
+    const Geometry& geometry = frame.resources->geometries[draw.geometry];
+    const pipeline::PrimitiveReader primitives(*frame.resources, geometry);
+    const pipeline::AttributeReader positions(*frame.resources, *geometry.find(pipeline::Semantic::position));
+    for (std::uint32_t instance = 0; instance < draw.instances.size(); ++instance) {
+        const glm::dmat4 to_eye = glm::dmat4(frame.view.view) * glm::dmat4(draw.instances[instance]);
+        for (std::uint32_t i = 0; i < geometry.triangle_count(); ++i) {
+            SortedTriangle triangle{number, instance, primitives(i), 0};
+            glm::dvec3 sum(0.0);
+            for (const std::uint32_t vertex : triangle.vertices) sum += glm::dvec3(glm::vec3(positions(vertex)));
+            const double distance = -(to_eye * glm::dvec4(sum / 3.0, 1.0)).z;
+            // What has no place in space is culled later, wherever it stands.
+            triangle.key = ordered_bits(std::isfinite(distance) ? static_cast<float>(distance) : 0.0F);
+            triangles.push_back(triangle);
+        }
+    }
+}
+
+class Resubmission {
+  public:
+    Resubmission(const Frame& frame, const pipeline::SubmissionPlan& plan)
+        : frame_(frame), plan_(plan), result_(frame), resources_(std::make_shared<Resources>(*frame.resources)) {
+        if (plan.flush_draws) add_flush_geometry();
+    }
+
+    Frame frame() {
+        for (std::size_t i = 0; i < frame_.passes.size(); ++i)
+            if (frame_.passes[i].kbuffer) result_.passes[i].draws = resubmitted(frame_.passes[i]);
+        resources_->place();
+        result_.resources = resources_;
+        return std::move(result_);
+    }
+
+  private:
+    std::vector<std::uint32_t> resubmitted(const pipeline::Pass& pass) {
+        std::vector<SortedTriangle> triangles;
+        for (const std::uint32_t draw : pass.draws) add_triangles(triangles, frame_, draw);
+        if (plan_.sort_by_centroid) radix_sort(triangles);
+        write_indices(triangles);
+        std::vector<std::uint32_t> draws;
+        for (std::size_t begin = 0; begin < triangles.size();) {
+            const std::size_t end = end_of_draw(triangles, begin);
+            add_draw(draws, triangles, begin, end);
+            begin = end;
+        }
+        return draws;
+    }
+
+    // Triangles of one draw and one instance that follow each other, up to the size of a batch.
+    std::size_t end_of_draw(const std::vector<SortedTriangle>& triangles, std::size_t begin) const {
+        const std::size_t most = plan_.batch_triangles == 0 ? triangles.size() : plan_.batch_triangles;
+        std::size_t end = begin + 1;
+        while (end < triangles.size() && end - begin < most && triangles[end].draw == triangles[begin].draw &&
+               triangles[end].instance == triangles[begin].instance)
+            ++end;
+        return end;
+    }
+
+    void write_indices(const std::vector<SortedTriangle>& triangles) {
+        if (triangles.size() > std::numeric_limits<std::uint32_t>::max() / 3)
+            throw sim::InputError(
+                "the triangles of one pass need more than 2^32 - 1 indices when they are submitted anew");
+        pipeline::Buffer buffer;
+        buffer.name = "submitted indices";
+        buffer.bytes.resize(triangles.size() * 12);
+        for (std::size_t i = 0; i < triangles.size(); ++i)
+            std::memcpy(buffer.bytes.data() + i * 12, triangles[i].vertices.data(), 12);
+        index_buffer_ = static_cast<std::uint32_t>(resources_->buffers.size());
+        resources_->buffers.push_back(std::move(buffer));
+    }
+
+    void add_draw(std::vector<std::uint32_t>& draws, const std::vector<SortedTriangle>& triangles, std::size_t begin,
+                  std::size_t end) {
+        const Draw& from = frame_.draws[triangles[begin].draw];
+        Geometry geometry = frame_.resources->geometries[from.geometry];
+        geometry.topology = pipeline::Topology::triangles;
+        geometry.index_type = pipeline::IndexType::u32;
+        geometry.index_buffer = index_buffer_;
+        geometry.index_offset = begin * 12;
+        geometry.index_count = static_cast<std::uint32_t>((end - begin) * 3);
+        geometry.primitive_restart = false;
+        geometry.runs.clear();
+        push_draw(draws, {from.name, 0, from.material, {from.instances[triangles[begin].instance]}},
+                  std::move(geometry));
+        if (plan_.flush_draws) push_draw(draws, flush_draw_, flush_geometry_);
+    }
+
+    void push_draw(std::vector<std::uint32_t>& draws, Draw draw, Geometry geometry) {
+        draw.geometry = static_cast<std::uint32_t>(resources_->geometries.size());
+        resources_->geometries.push_back(std::move(geometry));
+        draws.push_back(static_cast<std::uint32_t>(result_.draws.size()));
+        result_.draws.push_back(std::move(draw));
+    }
+
+    // The flushing quad writes nothing, so what it costs is its draw call and the time it covers the screen, which the
+    // fragment scheduler counts; its own triangle lies in one point.
+    void add_flush_geometry() {
+        pipeline::Buffer buffer;
+        buffer.name = "flush";
+        buffer.bytes.resize(36);
+        pipeline::VertexAttribute position;
+        position.buffer = static_cast<std::uint32_t>(resources_->buffers.size());
+        resources_->buffers.push_back(std::move(buffer));
+        flush_geometry_.name = "flush";
+        flush_geometry_.attributes = {position};
+        flush_geometry_.vertex_count = 3;
+        flush_geometry_.index_count = 3;
+        flush_draw_ = {"flush", 0, static_cast<std::uint32_t>(resources_->materials.size()), {glm::mat4(1.0F)}};
+        resources_->materials.push_back({});
+    }
+
+    const Frame& frame_;
+    pipeline::SubmissionPlan plan_;
+    Frame result_;
+    std::shared_ptr<Resources> resources_;
+    std::uint32_t index_buffer_ = 0;
+    Geometry flush_geometry_;
+    Draw flush_draw_;
+};
+
+} // namespace
+
+Frame submitted(const Frame& frame, const pipeline::SubmissionPlan& plan) {
+    if (!plan.changes()) return frame;
+    return Resubmission(frame, plan).frame();
+}
+
+} // namespace traces

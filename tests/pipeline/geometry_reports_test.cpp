@@ -108,6 +108,7 @@ TEST(GeometryReportsLong, G8InterleavedIsFasterForEveryNumberOfAttributesAndGain
     for (const std::string gpu : {"g70", "r420"}) {
         const auto rows = figures_of(gpu, "F3.3 least");
         EXPECT_GT(rows.at("F3.3 least gain for n = 1 to 8").model, 1) << gpu;
+        // Estimated; in detail r420, where memory limits, falls by 1% from n = 6 to 7.
         EXPECT_GT(rows.at("F3.3 least growth of the gain with n").model, 1) << gpu;
     }
 }

@@ -28,7 +28,7 @@ void add_input(VertexPathDemand& demand, const InputCostParts& parts, double ver
     demand.line_input = lines * parts.line;
     demand.large_draws =
         (parts.slowdown - 1) * (demand.index_input + demand.vertex_input + demand.attribute_input + demand.line_input);
-    demand.bus = lines * parts.bus_line + index_bytes * parts.bus_index_byte;
+    demand.bus = parts.bus_draw + lines * parts.bus_line + index_bytes * parts.bus_index_byte;
 }
 
 } // namespace

@@ -19,23 +19,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const std::vector<std::string>& measures() {
-    static const std::vector<std::string> list{"fps",  "ms",        "vertices_per_s", "triangles_per_s",
-                                               "acmr", "overfetch", "bytes"};
-    return list;
-}
-
-double measure_of(const StudyValue& value, const std::string& name) {
-    const std::map<std::string, double> all{{"fps", value.fps},
-                                            {"ms", value.milliseconds},
-                                            {"vertices_per_s", value.vertices_per_second},
-                                            {"triangles_per_s", value.triangles_per_second},
-                                            {"acmr", value.acmr},
-                                            {"overfetch", value.overfetch},
-                                            {"bytes", value.bytes}};
-    return all.at(name);
-}
-
 StudySeries series_of(TomlTable& table) {
     StudySeries series;
     series.name = table.text("name");
@@ -55,8 +38,9 @@ void read_study(TomlTable& root, Study& study) {
     study.x = root.text("x");
     study.logarithmic = root.flag_or("logarithmic", false);
     study.measure = root.text_or("measure", "fps");
-    if (std::find(measures().begin(), measures().end(), study.measure) == measures().end())
-        root.expected("measure", fmt::format("one of {}", fmt::join(measures(), ", ")));
+    const std::vector<std::string>& measures = study_measures();
+    if (std::find(measures.begin(), measures.end(), study.measure) == measures.end())
+        root.expected("measure", fmt::format("one of {}", fmt::join(measures, ", ")));
     root.tables("series", [&](TomlTable& table) { study.series.push_back(series_of(table)); });
     root.entry_lists("points", [&](const std::map<std::string, std::string>& point) { study.points.push_back(point); });
     if (study.series.empty()) root.expected("series", "at least one");
@@ -118,6 +102,23 @@ StudyValue measure(const PreparedFrame& prepared, const pipeline::GpuParams& gpu
 
 } // namespace
 
+const std::vector<std::string>& study_measures() {
+    static const std::vector<std::string> list{"fps",  "ms",        "vertices_per_s", "triangles_per_s",
+                                               "acmr", "overfetch", "bytes"};
+    return list;
+}
+
+double measure_of(const StudyValue& value, const std::string& measure) {
+    const std::map<std::string, double> all{{"fps", value.fps},
+                                            {"ms", value.milliseconds},
+                                            {"vertices_per_s", value.vertices_per_second},
+                                            {"triangles_per_s", value.triangles_per_second},
+                                            {"acmr", value.acmr},
+                                            {"overfetch", value.overfetch},
+                                            {"bytes", value.bytes}};
+    return all.at(measure);
+}
+
 std::vector<std::string> study_names() {
     std::set<std::string> names;
     for (const fs::path& directory : ropsim_build::data_dirs()) {
@@ -145,6 +146,27 @@ Study load_study(const std::string& name_or_path) {
     return study;
 }
 
+std::vector<StudyValue> run_series(const Study& study, const StudySeries& series,
+                                   const std::map<std::string, std::string>& point,
+                                   const std::vector<std::string>& gpus, const GeometryRunOptions& options) {
+    const GeometryExperiment experiment{filled(series.scene, point, study), filled(series.prepare, point, study),
+                                        submission_of(filled(series.submission, point, study), study),
+                                        series.reads_all};
+    std::optional<PreparedFrame> prepared;
+    std::vector<StudyValue> values;
+    for (const std::string& gpu : gpus) {
+        const pipeline::GpuParams params = configured_gpu(gpu, filled(series.settings, point, study));
+        if (!prepared) prepared = prepare_frame(experiment, params);
+        StudyValue value = measure(*prepared, params, options);
+        value.gpu = gpu;
+        value.series = series.name;
+        value.x = point.at("x");
+        value.measure = measure_of(value, study.measure);
+        values.push_back(std::move(value));
+    }
+    return values;
+}
+
 StudyResult run_study(const Study& study, const std::vector<std::string>& gpus, const GeometryRunOptions& options) {
     StudyResult result{study, {}, options.fidelity};
     if (!gpus.empty()) result.study.gpus = gpus;
@@ -157,21 +179,8 @@ StudyResult run_study(const Study& study, const std::vector<std::string>& gpus, 
     pipeline::parallel_for(options.threads, cells, [&](std::size_t cell) {
         const auto& point = study.points[cell / study.series.size()];
         const StudySeries& series = study.series[cell % study.series.size()];
-        const GeometryExperiment experiment{filled(series.scene, point, study), filled(series.prepare, point, study),
-                                            submission_of(filled(series.submission, point, study), study),
-                                            series.reads_all};
-        std::optional<PreparedFrame> prepared;
-        for (std::size_t i = 0; i < each; ++i) {
-            const std::string& gpu = result.study.gpus[i];
-            const pipeline::GpuParams params = configured_gpu(gpu, filled(series.settings, point, study));
-            if (!prepared) prepared = prepare_frame(experiment, params);
-            StudyValue value = measure(*prepared, params, options);
-            value.gpu = gpu;
-            value.series = series.name;
-            value.x = point.at("x");
-            value.measure = measure_of(value, study.measure);
-            result.values[cell * each + i] = std::move(value);
-        }
+        std::vector<StudyValue> values = run_series(study, series, point, result.study.gpus, options);
+        std::move(values.begin(), values.end(), result.values.begin() + static_cast<std::ptrdiff_t>(cell * each));
         const std::lock_guard lock(mutex);
         ++done;
         if (options.progress) options.progress(static_cast<double>(done) / static_cast<double>(cells));

@@ -50,12 +50,21 @@ struct StudyResult {
     Fidelity fidelity = Fidelity::detailed;
 };
 
+/// What a study may measure.
+const std::vector<std::string>& study_measures();
+double measure_of(const StudyValue& value, const std::string& measure);
+
 /// The studies on hand, sorted.
 std::vector<std::string> study_names();
 
 /// By name, or a .toml file. Throws sim::InputError for an unknown name (naming what is near) and for a file that is
 /// none.
 Study load_study(const std::string& name_or_path);
+
+/// One series at one point on each of the GPUs.
+std::vector<StudyValue> run_series(const Study& study, const StudySeries& series,
+                                   const std::map<std::string, std::string>& point,
+                                   const std::vector<std::string>& gpus, const GeometryRunOptions& options);
 
 /// @param gpus empty: those that the study names
 StudyResult run_study(const Study& study, const std::vector<std::string>& gpus, const GeometryRunOptions& options);

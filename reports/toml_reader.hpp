@@ -1,7 +1,10 @@
 // Reading the data files of reports/: every error names file, line and what was expected.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
+#include <fmt/format.h>
 #include <functional>
 #include <map>
 #include <string>
@@ -47,6 +50,15 @@ class TomlTable {
 /// Parses a data file of the project (ropsim_build::find_data) and hands its root to `read`.
 void read_data_file(const std::filesystem::path& relative, const std::function<void(TomlTable&)>& read);
 void read_toml_file(const std::filesystem::path& path, const std::function<void(TomlTable&)>& read);
+
+/// The value that a key names; the first one when the key is missing.
+template <class E, std::size_t n>
+E choice(TomlTable& table, std::string_view key, const std::array<std::string_view, n>& names) {
+    const std::string text = table.text_or(key, std::string(names.front()));
+    const auto found = std::find(names.begin(), names.end(), text);
+    if (found == names.end()) table.expected(key, fmt::format("one of {}", fmt::join(names, ", ")));
+    return static_cast<E>(found - names.begin());
+}
 
 /// A number or text as a text: 3 -> "3", "a" -> "a".
 std::string text_of_node(const toml::node& node);

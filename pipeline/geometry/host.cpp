@@ -83,17 +83,39 @@ void apply_cliff(DrawTerms& terms, const HostParams& params, const Geometry& geo
     if (terms.over_limit) terms.slowdown *= params.overflow_slowdown;
 }
 
-// Buffers that drawn geometry lies in, whole: what is not read of them takes its place all the same.
-double buffer_bytes(const Frame& frame) {
-    std::set<std::uint32_t> used;
-    for (const Draw& draw : frame.draws) {
-        const Geometry& geometry = frame.resources->geometries[draw.geometry];
-        for (const VertexAttribute& attribute : geometry.attributes) used.insert(attribute.buffer);
-        if (geometry.index_type != IndexType::none) used.insert(geometry.index_buffer);
-    }
+std::set<std::uint32_t> buffers_of(const Frame& frame, std::uint32_t draw) {
+    const Geometry& geometry = frame.resources->geometries[frame.draws[draw].geometry];
+    std::set<std::uint32_t> buffers;
+    for (const VertexAttribute& attribute : geometry.attributes) buffers.insert(attribute.buffer);
+    if (geometry.index_type != IndexType::none) buffers.insert(geometry.index_buffer);
+    return buffers;
+}
+
+// Of buffers, whole: what is not read of them takes its place all the same.
+double total_bytes(const Frame& frame, const std::set<std::uint32_t>& buffers) {
     double bytes = 0;
-    for (const std::uint32_t buffer : used) bytes += static_cast<double>(frame.resources->buffers[buffer].bytes.size());
+    for (const std::uint32_t buffer : buffers)
+        bytes += static_cast<double>(frame.resources->buffers[buffer].bytes.size());
     return bytes;
+}
+
+bool fits(const HostParams& params, const Frame& frame) {
+    if (params.vram_mb <= 0 || frame.submission != Submission::buffers) return true;
+    std::set<std::uint32_t> used;
+    for (std::uint32_t draw = 0; draw < frame.draws.size(); ++draw) used.merge(buffers_of(frame, draw));
+    return total_bytes(frame, used) <= params.vram_mb * bytes_per_mb;
+}
+
+void copy_buffers(std::vector<DrawTerms>& terms, const Frame& frame) {
+    for (const Pass& pass : frame.passes) {
+        std::set<std::uint32_t> present;
+        for (const std::uint32_t draw : pass.draws) {
+            std::set<std::uint32_t> missing = buffers_of(frame, draw);
+            std::erase_if(missing, [&present](std::uint32_t buffer) { return present.contains(buffer); });
+            terms[draw].copied_bytes = total_bytes(frame, missing);
+            present.merge(missing);
+        }
+    }
 }
 
 } // namespace
@@ -140,15 +162,12 @@ const SlotConversion& ConversionParams::of(Slot slot) const {
 std::vector<DrawTerms> draw_terms(const HostParams& params, const Frame& frame) {
     std::vector<DrawTerms> list;
     list.reserve(frame.draws.size());
-    const double placed = buffer_bytes(frame), room = params.vram_mb * bytes_per_mb;
     const bool buffers = frame.submission == Submission::buffers;
-    const double outside = buffers && room > 0 && placed > room ? 1 - room / placed : 0;
     std::map<std::uint32_t, std::uint32_t> spans; // by geometry: draws share them
     for (const Draw& draw : frame.draws) {
         const Geometry& geometry = frame.resources->geometries[draw.geometry];
         const Material& material = frame.resources->materials[draw.material];
         DrawTerms terms;
-        terms.host_share = outside;
         terms.cpu_us = conversion_us(params, frame, geometry, material);
         if (needs_span(params, frame)) {
             const auto [known, unseen] = spans.try_emplace(draw.geometry, 0);
@@ -166,6 +185,7 @@ std::vector<DrawTerms> draw_terms(const HostParams& params, const Frame& frame) 
         }
         list.push_back(terms);
     }
+    if (!fits(params, frame)) copy_buffers(list, frame);
     return list;
 }
 

@@ -5,7 +5,11 @@
 // explanations to choose from; the gain of draws with a small index range; buffers that do not fit into video memory;
 // vertices that come from the application with every frame instead of from buffers. These are properties of drivers,
 // measured from outside; why they are so is not modelled. Not modelled: the latency of the bus, contention on it.
-// Source: specification 004, sections 2.1, 4.1-4.6, 5 (verdicts P and C; mechanisms M1-M3), 9.1.
+//
+// Buffers are replaced whole, the least recently used one first. A frame goes round its buffers in a circle, so when
+// they do not fit together, every one has been replaced before it is needed again: all of them cross the bus in every
+// pass, each before the first draw that reads it. The copies are commands among the draws, so the GPU does not draw
+// meanwhile. Source: specification 004, sections 2.1, 4.1-4.6, 5 (verdicts P and C; mechanisms M1-M3), 9.1.
 #pragma once
 
 #include "pipeline/draw.hpp"
@@ -107,11 +111,13 @@ struct HostParams {
                                           "range than with the smallest; grows with the logarithm of the range")
                 .range(0, 100),
             sim::field<&P::span_saturation>("Index range below which nothing is gained").unit("vertices").at_least(1),
-            sim::field<&P::vram_mb>("Video memory for vertices and indices; what exceeds it crosses the bus; 0: enough")
+            sim::field<&P::vram_mb>(
+                "Video memory for vertices and indices; buffers of a frame that exceed it cross the "
+                "bus in every pass; 0: enough")
                 .unit("MB")
                 .range(0, 1e6),
             sim::field<&P::bus_gbps>("Bus between computer and GPU").unit("GB/s").range(0.001, 1e4),
-            sim::field<&P::outside_gbps>("What the GPU fetches from outside its memory; the bus is another limit")
+            sim::field<&P::outside_gbps>("What comes from outside video memory; the bus is another limit")
                 .unit("GB/s")
                 .range(0.001, 1e4),
             sim::field<&P::client_gbps>("What the driver copies of arrays that the application keeps; the bus is "
@@ -131,6 +137,7 @@ struct DrawTerms {
     double cpu_us = 0;       ///< before the draw can be submitted: conversion
     double slowdown = 1;     ///< of the vertex input, at least 1
     double host_share = 0;   ///< of the bytes of vertices and indices: they are fetched across the bus
+    double copied_bytes = 0; ///< of buffers that are brought into video memory before the draw
     double feed_us = 0;      ///< what it takes to hand the vertices over; the GPU works meanwhile. 0: from buffers
     bool over_limit = false; ///< one of the explanations of large draws applies
 };
@@ -140,7 +147,7 @@ std::vector<DrawTerms> draw_terms(const HostParams& params, const Frame& frame);
 
 /// Seconds in which `bytes` cross the bus.
 inline double bus_seconds(const HostParams& params, double bytes) { return bytes / (params.bus_gbps * 1e9); }
-/// Seconds in which the GPU fetches `bytes` from outside its memory.
+/// Seconds in which `bytes` come from outside video memory.
 inline double outside_seconds(const HostParams& params, double bytes) {
     return bytes / (std::min(params.bus_gbps, params.outside_gbps) * 1e9);
 }

@@ -49,15 +49,16 @@ InputCostParts input_cost_parts(const InputPortParams& params, const HostParams&
     }
     parts.line = cycles_of(line, params.line_bytes_per_clk);
     parts.index_byte = cycles_of(1, params.index_bytes_per_clk);
-    const double bus_cycles_per_byte = terms.host_share * outside_seconds(host, 1) * core_mhz * 1e6;
-    parts.bus_line = bus_cycles_per_byte * line;
-    parts.bus_index_byte = bus_cycles_per_byte;
+    const double bus_cycles_per_byte = outside_seconds(host, 1) * core_mhz * 1e6;
+    parts.bus_draw = bus_cycles_per_byte * terms.copied_bytes;
+    parts.bus_line = bus_cycles_per_byte * terms.host_share * line;
+    parts.bus_index_byte = bus_cycles_per_byte * terms.host_share;
     parts.slowdown = terms.slowdown;
     return parts;
 }
 
 InputCost input_cost(const InputCostParts& parts) {
-    return {in_parts(parts.draw), in_parts((parts.base + parts.attributes) * parts.slowdown),
+    return {in_parts(parts.draw + parts.bus_draw), in_parts((parts.base + parts.attributes) * parts.slowdown),
             in_parts(parts.line * parts.slowdown + parts.bus_line),
             in_parts(parts.index_byte * parts.slowdown + parts.bus_index_byte)};
 }

@@ -76,8 +76,8 @@ struct InputCostParts {
     double base = 0, attributes = 0; ///< of a vertex
     double line = 0;                 ///< through the port
     double index_byte = 0;
-    double bus_line = 0, bus_index_byte = 0; ///< what crossing the bus adds
-    double slowdown = 1;                     ///< of all of it
+    double bus_draw = 0, bus_line = 0, bus_index_byte = 0; ///< what crossing the bus adds
+    double slowdown = 1;                                   ///< of all of it
 };
 
 /// @param line bytes of a line of the pre-transform cache

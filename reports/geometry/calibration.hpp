@@ -39,8 +39,8 @@ struct LeftOneOut {
     std::string gpu, parameter;
     std::string row, instead_of;
     double value = 0, usual_value = 0;
-    ErrorSummary with_row; ///< of the GPU, the replaced row being predicted and this one not
-    bool found = true;     ///< the row can be met at all
+    ErrorSpread with_row; ///< of the GPU, the replaced row being predicted and this one not
+    bool found = true;    ///< the row can be met at all
 };
 /// With estimates, whatever the options say: every alternative of the plan is a calibration of its own.
 std::vector<LeftOneOut> leave_one_out(const std::vector<std::string>& gpus, const GeometryRunOptions& options);

@@ -2,6 +2,8 @@
 
 #include "reports/result.hpp"
 
+#include <cmath>
+
 namespace reports {
 
 using nlohmann::ordered_json;
@@ -44,10 +46,15 @@ ordered_json case_json(const GeometryCase& one) {
 
 ordered_json summary_json(const ErrorSummary& summary) {
     return {{"gpu", summary.gpu},
-            {"predicted_rows", summary.predicted},
-            {"median_predicted_error", summary.median},
-            {"worst_predicted_error", summary.worst},
-            {"worst_row", summary.worst_row}};
+            {"predicted_rows", summary.predicted.rows},
+            {"median_predicted_error", summary.predicted.median},
+            {"worst_predicted_error", summary.predicted.worst},
+            {"worst_row", summary.predicted.worst_row},
+            {"measured",
+             {{"predicted_rows", summary.measured.rows},
+              {"median_predicted_error", summary.measured.median},
+              {"worst_predicted_error", summary.measured.worst},
+              {"worst_row", summary.measured.worst_row}}}};
 }
 
 } // namespace
@@ -84,12 +91,19 @@ ordered_json validation_json(const GeometryValidation& validation, const std::ve
         ordered_json json = {{"table", row.table},
                              {"row", row.row},
                              {"gpu", row.gpu},
-                             {"published", row.published},
+                             {"published", row.published()},
                              {"model", row.model},
                              {"ratio", row.ratio()},
                              {"status", sim::enum_name(row.status)},
-                             {"acmr", row.acmr},
-                             {"limit", row.limit}};
+                             {"unit", row.unit},
+                             {"origin", sim::enum_name(row.origin)}};
+        if (row.low < row.high) {
+            json["published_least"] = row.low;
+            if (std::isfinite(row.high)) json["published_most"] = row.high;
+        }
+        if (!row.source.empty()) json["source"] = row.source;
+        if (row.acmr > 0) json["acmr"] = row.acmr;
+        if (!row.limit.empty()) json["limit"] = row.limit;
         if (!row.parameter.empty()) json["parameter"] = row.parameter;
         if (!row.explanation.empty()) json["explanation"] = row.explanation;
         rows.push_back(std::move(json));

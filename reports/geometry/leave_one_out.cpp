@@ -22,8 +22,8 @@ std::vector<Case> cases_of(const std::string& gpu, const CalibrationPlan& plan) 
 }
 
 // Rows of a GPU with the present values; the roles of the two rows are exchanged.
-ErrorSummary errors_with(const Case& exchanged, const std::vector<PublishedRow>& rows, const CalibrationPlan& plan,
-                         const Solver& solver, const Values& values) {
+ErrorSpread errors_with(const Case& exchanged, const std::vector<PublishedRow>& rows, const CalibrationPlan& plan,
+                        const Solver& solver, const Values& values) {
     const std::string& gpu = exchanged.step.gpu;
     std::vector<ValidationRow> measured;
     for (const PublishedRow& published : rows) {
@@ -40,11 +40,11 @@ ErrorSummary errors_with(const Case& exchanged, const std::vector<PublishedRow>&
         row.table = published.table;
         row.row = published.row;
         row.gpu = gpu;
-        row.published = published.fps.at(gpu);
+        row.low = row.high = published.fps.at(gpu);
         row.model = 1000 / solver.milliseconds(published.key(), values);
         measured.push_back(std::move(row));
     }
-    return summarise(measured).front();
+    return summarise(measured).front().predicted;
 }
 
 } // namespace

@@ -6,26 +6,11 @@
 
 #include <algorithm>
 #include <fmt/format.h>
-#include <optional>
 #include <set>
 
 namespace reports {
 
 namespace {
-
-template <class E, std::size_t n>
-std::optional<E> named(std::string_view text, const std::array<std::string_view, n>& names) {
-    const auto found = std::find(names.begin(), names.end(), text);
-    if (found == names.end()) return std::nullopt;
-    return static_cast<E>(found - names.begin());
-}
-
-template <class E, std::size_t n>
-E choice(TomlTable& table, std::string_view key, const std::array<std::string_view, n>& names) {
-    const auto value = named<E>(table.text_or(key, std::string(names.front())), names);
-    if (!value) table.expected(key, fmt::format("one of {}", fmt::join(names, ", ")));
-    return *value;
-}
 
 constexpr std::array<std::string_view, 2> kinds{"calibrated", "penalty"};
 constexpr std::array<std::string_view, 2> scalings{"vertex_units", "memory"};
@@ -76,8 +61,9 @@ CalibrationPlan load_calibration_plan() {
     CalibrationPlan plan;
     read_data_file("reports/published/calibration.toml", [&](TomlTable& root) {
         root.tables("steps", [&](TomlTable& table) { plan.steps.push_back(step_of(table)); });
-        root.tables("penalties", [&](TomlTable& table) {
-            plan.penalties.push_back({table.text("gpu"), table.text("row"), table.text("parameter")});
+        root.tables("shared", [&](TomlTable& table) {
+            plan.shared.push_back({table.text("gpu"), table.text("row"), table.text("parameter"),
+                                   choice<CalibrationKind>(table, "kind", kinds), table.text("reason")});
         });
         root.tables("scaled", [&](TomlTable& table) {
             plan.scaled.push_back({table.text("gpu"), table.text("from"), table.text("parameter"),
@@ -95,10 +81,10 @@ std::string CalibrationPlan::parameter_of(const std::string& gpu, const std::str
             return step.parameter;
         }
     }
-    for (const SharedPenalty& shared : penalties)
-        if (shared.gpu == gpu && shared.row == row) {
-            kind = CalibrationKind::penalty;
-            return shared.parameter;
+    for (const SharedNumber& number : shared)
+        if (number.gpu == gpu && number.row == row) {
+            kind = number.kind;
+            return number.parameter;
         }
     return {};
 }

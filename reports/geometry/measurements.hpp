@@ -3,8 +3,10 @@
 
 #include "pipeline/frame.hpp"
 
+#include <array>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace reports {
@@ -17,6 +19,13 @@ struct GeometryExperiment {
     bool reads_all = true; ///< the vertex shader reads every attribute, or positions only
 
     friend bool operator==(const GeometryExperiment&, const GeometryExperiment&) = default;
+};
+
+/// Where a published number comes from.
+enum class PublishedOrigin : std::uint8_t {
+    measured, ///< printed in a table
+    stated,   ///< in words
+    derived   ///< from numbers that were printed, or from words
 };
 
 /// One row of a published table.
@@ -41,9 +50,12 @@ struct CalibrationStep {
     std::vector<std::string> alternatives; ///< rows that could determine it instead
 };
 
-/// A row that a penalty of another row decides.
-struct SharedPenalty {
+/// A row, of a table or a figure, that a number decides which was found from another row, or chosen with this one in
+/// view.
+struct SharedNumber {
     std::string gpu, row, parameter;
+    CalibrationKind kind = CalibrationKind::calibrated;
+    std::string reason;
 };
 
 /// How a number follows from that of a related GPU.
@@ -56,10 +68,10 @@ struct ScaledParameter {
 
 struct CalibrationPlan {
     std::vector<CalibrationStep> steps;
-    std::vector<SharedPenalty> penalties;
+    std::vector<SharedNumber> shared;
     std::vector<ScaledParameter> scaled;
 
-    /// The step or penalty that uses the row for the GPU; "" when the row is predicted.
+    /// The number that the row decided, or that decides it, for the GPU; "" when the row is predicted.
     std::string parameter_of(const std::string& gpu, const std::string& row, CalibrationKind& kind) const;
 };
 
@@ -74,3 +86,8 @@ std::vector<std::string> rows_in(const std::string& expression);
 const PublishedRow& find_row(const std::vector<PublishedRow>& rows, const std::string& key);
 
 } // namespace reports
+
+template <>
+struct sim::EnumNames<reports::PublishedOrigin> {
+    static constexpr std::array<std::string_view, 3> names{"measured", "stated", "derived"};
+};

@@ -53,21 +53,28 @@ Table draws_table(const GeometryAdvice& advice) {
 
 Table rows_table(const GeometryValidation& validation) {
     Table table{"validation.csv",
-                {"table", "row", "GPU", "published [frames/s]", "model [frames/s]", "ratio", "status", "number", "ACMR",
-                 "limit", "explanation"},
+                {"table", "row", "GPU", "unit", "published", "published, least", "published, most", "model", "ratio",
+                 "status", "origin", "source", "number", "ACMR", "limit", "explanation"},
                 {}};
     for (const ValidationRow& row : validation.rows)
-        table.rows.push_back({row.table, row.row, row.gpu, number(row.published), number(row.model),
-                              number(row.ratio()), std::string(sim::enum_name(row.status)), row.parameter,
-                              number(row.acmr), row.limit, row.explanation});
+        table.rows.push_back({row.table, row.row, row.gpu, row.unit, number(row.published()), number(row.low),
+                              number(row.high), number(row.model), number(row.ratio()),
+                              std::string(sim::enum_name(row.status)), std::string(sim::enum_name(row.origin)),
+                              row.source, row.parameter, row.acmr > 0 ? number(row.acmr) : "", row.limit,
+                              row.explanation});
     return table;
 }
 
 Table summary_table(const GeometryValidation& validation) {
-    Table table{"summary.csv", {"GPU", "predicted rows", "median error", "worst error", "worst row"}, {}};
+    Table table{"summary.csv",
+                {"GPU", "predicted rows", "median error", "worst error", "worst row", "measured of them",
+                 "median error of measured", "worst error of measured", "worst row of measured"},
+                {}};
     for (const ErrorSummary& summary : validation.summary)
-        table.rows.push_back({summary.gpu, std::to_string(summary.predicted), number(summary.median),
-                              number(summary.worst), summary.worst_row});
+        table.rows.push_back({summary.gpu, std::to_string(summary.predicted.rows), number(summary.predicted.median),
+                              number(summary.predicted.worst), summary.predicted.worst_row,
+                              std::to_string(summary.measured.rows), number(summary.measured.median),
+                              number(summary.measured.worst), summary.measured.worst_row});
     return table;
 }
 

@@ -11,7 +11,8 @@ namespace reports {
 
 /// cases.csv: one row per case; demand.csv: one per case and part of the vertex path; draws.csv: one per case and draw.
 std::vector<Table> advice_tables(const GeometryAdvice& advice);
-/// validation.csv: one row per published row and GPU; summary.csv; leave_one_out.csv when there are entries.
+/// validation.csv: one row per published row, of a table or a figure, and GPU; summary.csv; leave_one_out.csv when
+/// there are entries.
 std::vector<Table> validation_tables(const GeometryValidation& validation, const std::vector<LeftOneOut>& entries);
 
 } // namespace reports

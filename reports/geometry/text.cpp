@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <utility>
 
 namespace reports {
 
@@ -90,6 +91,13 @@ std::string steps_text(const GeometryAdvice& advice, TerminalStyle style) {
 
 } // namespace
 
+std::string published_text(const ValidationRow& row) {
+    if (row.low == row.high) return rate_text(row.low);
+    if (std::isinf(row.high)) return fmt::format("at least {}", rate_text(row.low));
+    if (row.low == 0) return fmt::format("at most {}", rate_text(row.high));
+    return fmt::format("{} to {}", rate_text(row.low), rate_text(row.high));
+}
+
 std::string advice_text(const GeometryAdvice& advice, TerminalStyle style) {
     std::string text =
         wrap(fmt::format("{}: {} triangles; vertices from {}; GPU {}; {}", advice.scene, with_commas(advice.triangles),
@@ -109,31 +117,43 @@ std::string validation_text(const GeometryValidation& validation, TerminalStyle 
     std::vector<std::vector<std::string>> rows;
     std::string explanations;
     for (const ValidationRow& row : validation.rows) {
-        rows.push_back({row.table, row.row, row.gpu, rate_text(row.published), rate_text(row.model),
-                        fmt::format("{:.3f}", row.ratio()), status_text(row.status), fmt::format("{:.3f}", row.acmr),
+        rows.push_back({row.table, row.row, row.gpu, row.unit, published_text(row), rate_text(row.model),
+                        fmt::format("{:.3f}", row.ratio()), status_text(row.status),
+                        std::string(sim::enum_name(row.origin)), row.acmr > 0 ? fmt::format("{:.3f}", row.acmr) : "",
                         row.limit});
-        if (row.status == RowStatus::predicted && row.error() > large_miss)
-            explanations += wrap(fmt::format("  {} {} on {}: {}", row.table, row.row, row.gpu,
+        if (row.error() > large_miss)
+            explanations += wrap(fmt::format("  {} on {} ({}): {}", row.key(), row.gpu, status_text(row.status),
                                              row.explanation.empty() ? "not explained" : row.explanation),
                                  style.columns, 4);
     }
     std::string text = text_table({{"table", "", true},
                                    {"row", "", true},
                                    {"GPU", "", true},
-                                   {"published", "/s"},
-                                   {"model", "/s"},
+                                   {"unit", "", true},
+                                   {"published", ""},
+                                   {"model", ""},
                                    {"ratio", ""},
                                    {"status", "", true},
+                                   {"published number", "", true},
                                    {"ACMR", ""},
                                    {"limit", "", true}},
                                   rows, style.colour);
     rows.clear();
     for (const ErrorSummary& summary : validation.summary)
-        rows.push_back({summary.gpu, std::to_string(summary.predicted), percent_text(summary.median),
-                        percent_text(summary.worst), summary.worst_row});
-    text += "\nErrors of predicted rows:\n" +
-            text_table({{"GPU", "", true}, {"rows", ""}, {"median", ""}, {"worst", ""}, {"worst row", "", true}}, rows,
-                       style.colour);
+        for (const auto& [which, spread] :
+             {std::pair{"all", &summary.predicted}, std::pair{"measured", &summary.measured}})
+            rows.push_back({summary.gpu, which, std::to_string(spread->rows), percent_text(spread->median),
+                            percent_text(spread->worst), spread->worst_row});
+    text +=
+        "\nErrors of predicted rows, and of those among them whose number was measured (neither stated in words nor "
+        "derived):\n" +
+        text_table({{"GPU", "", true},
+                    {"which", "", true},
+                    {"rows", ""},
+                    {"median", ""},
+                    {"worst", ""},
+                    {"worst row", "", true}},
+                   rows, style.colour);
     if (!explanations.empty()) text += "\nMisses above 25%:\n" + explanations;
     return text;
 }

@@ -9,6 +9,9 @@
 
 namespace reports {
 
+/// What was published: a number, an interval, or a bound. "4.44", "500 to 1000", "at least 1.00"
+std::string published_text(const ValidationRow& row);
+
 std::string advice_text(const GeometryAdvice& advice, TerminalStyle style);
 std::string validation_text(const GeometryValidation& validation, TerminalStyle style);
 std::string leave_one_out_text(const std::vector<LeftOneOut>& entries, TerminalStyle style);

@@ -1,11 +1,13 @@
 #include "reports/geometry/validation.hpp"
 
 #include "pipeline/functional/parallel.hpp"
+#include "reports/geometry/figures.hpp"
 #include "sim/suggest.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <iterator>
 #include <mutex>
 
 namespace reports {
@@ -19,20 +21,28 @@ double median_of(std::vector<double> values) {
     return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
 }
 
-ErrorSummary summary_of(std::string gpu, const std::vector<ValidationRow>& rows) {
-    ErrorSummary summary;
+ErrorSpread spread_of(const std::string& gpu, const std::vector<const ValidationRow*>& rows) {
+    ErrorSpread spread;
     std::vector<double> errors;
+    for (const ValidationRow* row : rows) {
+        errors.push_back(row->error());
+        if (row->error() < spread.worst) continue;
+        spread.worst = row->error();
+        spread.worst_row = gpu == "all" ? fmt::format("{} on {}", row->key(), row->gpu) : row->key();
+    }
+    spread.rows = errors.size();
+    spread.median = median_of(std::move(errors));
+    return spread;
+}
+
+ErrorSummary summary_of(const std::string& gpu, const std::vector<ValidationRow>& rows) {
+    std::vector<const ValidationRow*> predicted, measured;
     for (const ValidationRow& row : rows) {
         if (row.status != RowStatus::predicted || (gpu != "all" && row.gpu != gpu)) continue;
-        errors.push_back(row.error());
-        if (row.error() < summary.worst) continue;
-        summary.worst = row.error();
-        summary.worst_row = fmt::format("{} {}{}", row.table, row.row, gpu == "all" ? " on " + row.gpu : "");
+        predicted.push_back(&row);
+        if (row.origin == PublishedOrigin::measured) measured.push_back(&row);
     }
-    summary.gpu = std::move(gpu);
-    summary.predicted = errors.size();
-    summary.median = median_of(std::move(errors));
-    return summary;
+    return {gpu, spread_of(gpu, predicted), spread_of(gpu, measured)};
 }
 
 void check_gpus(const std::vector<std::string>& gpus, const std::vector<std::string>& known) {
@@ -47,11 +57,8 @@ ValidationRow unmeasured(const PublishedRow& published, const std::string& gpu, 
     row.table = published.table;
     row.row = published.row;
     row.gpu = gpu;
-    row.published = published.fps.at(gpu);
-    CalibrationKind kind{};
-    row.parameter = plan.parameter_of(gpu, published.key(), kind);
-    if (!row.parameter.empty())
-        row.status = kind == CalibrationKind::penalty ? RowStatus::penalty : RowStatus::calibrated;
+    row.low = row.high = published.fps.at(gpu);
+    apply_plan(row, plan);
     if (const auto text = published.explanations.find(gpu); text != published.explanations.end())
         row.explanation = text->second;
     return row;
@@ -70,6 +77,13 @@ void measure(ValidationRow& row, const pipeline::GpuParams& gpu, const pipeline:
 
 double ValidationRow::error() const { return std::abs(ratio() - 1); }
 
+void apply_plan(ValidationRow& row, const CalibrationPlan& plan) {
+    CalibrationKind kind{};
+    row.parameter = plan.parameter_of(row.gpu, row.key(), kind);
+    if (!row.parameter.empty())
+        row.status = kind == CalibrationKind::penalty ? RowStatus::penalty : RowStatus::calibrated;
+}
+
 std::vector<ErrorSummary> summarise(const std::vector<ValidationRow>& rows) {
     std::vector<std::string> gpus;
     for (const ValidationRow& row : rows)
@@ -80,17 +94,16 @@ std::vector<ErrorSummary> summarise(const std::vector<ValidationRow>& rows) {
     return list;
 }
 
-GeometryValidation validate_geometry(const std::vector<std::string>& gpus, const GeometryRunOptions& options) {
-    const std::vector<PublishedRow> published = load_published_geometry();
-    const CalibrationPlan plan = load_calibration_plan();
-    const std::vector<std::string> known = measured_gpus(published);
-    check_gpus(gpus, known);
+namespace {
+
+std::vector<ValidationRow> validate_tables(const std::vector<PublishedRow>& published, const CalibrationPlan& plan,
+                                           const std::vector<std::string>& gpus, const GeometryRunOptions& options) {
     std::vector<std::vector<ValidationRow>> by_experiment(published.size());
     std::size_t done = 0;
     std::mutex mutex;
     pipeline::parallel_for(options.threads, published.size(), [&](std::size_t i) {
         std::shared_ptr<const pipeline::Frame> frame;
-        for (const std::string& gpu : gpus.empty() ? known : gpus) {
+        for (const std::string& gpu : gpus) {
             if (!published[i].fps.contains(gpu)) continue;
             const pipeline::GpuParams params = gpu_params(gpu);
             if (frame == nullptr) frame = prepare_frame(published[i].experiment, params).frame;
@@ -101,10 +114,35 @@ GeometryValidation validate_geometry(const std::vector<std::string>& gpus, const
         ++done;
         if (options.progress) options.progress(static_cast<double>(done) / static_cast<double>(published.size()));
     });
+    std::vector<ValidationRow> rows;
+    for (auto& of_experiment : by_experiment)
+        std::move(of_experiment.begin(), of_experiment.end(), std::back_inserter(rows));
+    return rows;
+}
+
+// The progress of a part of the work as that of the whole.
+GeometryRunOptions part_of(const GeometryRunOptions& options, double from, double to) {
+    GeometryRunOptions part = options;
+    if (options.progress)
+        part.progress = [&options, from, to](double share) { options.progress(from + (to - from) * share); };
+    return part;
+}
+
+} // namespace
+
+GeometryValidation validate_geometry(const std::vector<std::string>& gpus, const GeometryRunOptions& options) {
+    const std::vector<PublishedRow> published = load_published_geometry();
+    const std::vector<PublishedFigure> figures = load_published_figures();
+    const CalibrationPlan plan = load_calibration_plan();
+    const std::vector<std::string> known = measured_gpus(published);
+    check_gpus(gpus, known);
+    const std::vector<std::string>& chosen = gpus.empty() ? known : gpus;
+    constexpr double share_of_tables = 0.7; // of the time
     GeometryValidation validation;
     validation.fidelity = options.fidelity;
-    for (auto& rows : by_experiment)
-        for (ValidationRow& row : rows) validation.rows.push_back(std::move(row));
+    validation.rows = validate_tables(published, plan, chosen, part_of(options, 0, share_of_tables));
+    std::vector<ValidationRow> rows = validate_figures(figures, plan, chosen, part_of(options, share_of_tables, 1));
+    std::move(rows.begin(), rows.end(), std::back_inserter(validation.rows));
     validation.summary = summarise(validation.rows);
     return validation;
 }

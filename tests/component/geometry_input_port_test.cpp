@@ -66,9 +66,12 @@ TEST(InputPort, BytesOutsideVideoMemoryCrossTheBus) {
     host.outside_gbps = 2; // the smaller one counts
     DrawTerms terms;
     terms.host_share = 0.25;
+    terms.copied_bytes = 1e6;
     const InputCostParts parts = pipeline::input_cost_parts({}, host, terms, {}, 32, 500);
     EXPECT_DOUBLE_EQ(parts.bus_line, 0.25 * 32 / 2e9 * 500e6);
     EXPECT_DOUBLE_EQ(parts.bus_index_byte, 0.25 / 2e9 * 500e6);
+    EXPECT_DOUBLE_EQ(parts.bus_draw, 1e6 / 2e9 * 500e6);
+    EXPECT_DOUBLE_EQ(parts.draw, 0); // a copy is no property of draws
 }
 
 TEST(InputPort, PortBoundFrameTakesPortTimePerVertex) {
@@ -161,13 +164,55 @@ TEST(Host, VerticesOfTheApplicationComeAtTheirRate) {
     EXPECT_NEAR(cycles(gpu, scene.frame) / (20000 * 15 * 20e-9 * gpu.clock.core_mhz * 1e6), 1.0, 0.01);
 }
 
-TEST(Host, WhatDoesNotFitIntoVideoMemoryCrossesTheBus) {
+TEST(Host, BuffersThatFitTogetherAreNotCopied) {
     const tests::GeometryScene scene = grass(10000); // 0.84 MB of vertices, 0.6 MB of indices
     HostParams host;
-    host.vram_mb = 0.72;
-    EXPECT_NEAR(pipeline::draw_terms(host, scene.frame)[0].host_share, 0.5, 1e-9);
-    host.vram_mb = 1.44;
+    for (const double room : {0.0, 1.44, 100.0}) { // 0: enough
+        host.vram_mb = room;
+        EXPECT_DOUBLE_EQ(pipeline::draw_terms(host, scene.frame)[0].copied_bytes, 0) << room;
+    }
+    host.vram_mb = 1.43;
+    EXPECT_DOUBLE_EQ(pipeline::draw_terms(host, scene.frame)[0].copied_bytes, 1.44e6);
     EXPECT_DOUBLE_EQ(pipeline::draw_terms(host, scene.frame)[0].host_share, 0);
+}
+
+TEST(Host, ABufferIsCopiedOncePerPassBeforeTheFirstDrawThatReadsIt) {
+    tests::GeometryScene scene = grass(10000);
+    scene.frame.draws.push_back(scene.frame.draws[0]);
+    scene.frame.draws.push_back(scene.frame.draws[0]);
+    scene.frame.passes[0].draws = {1, 0};
+    scene.frame.passes.push_back(scene.frame.passes[0]);
+    scene.frame.passes[1].draws = {2};
+    HostParams host;
+    host.vram_mb = 1;
+    const std::vector<DrawTerms> terms = pipeline::draw_terms(host, scene.frame);
+    EXPECT_DOUBLE_EQ(terms[0].copied_bytes, 0);
+    EXPECT_DOUBLE_EQ(terms[1].copied_bytes, 1.44e6);
+    EXPECT_DOUBLE_EQ(terms[2].copied_bytes, 1.44e6);
+    scene.frame.submission = Submission::client_arrays; // nothing is kept
+    EXPECT_DOUBLE_EQ(pipeline::draw_terms(host, scene.frame)[1].copied_bytes, 0);
+}
+
+TEST(Host, CopiesTakeTheTimeOfTheBusBesideThatOfTheDraws) {
+    const tests::GeometryScene scene = grass(10000);
+    GpuParams gpu = wide_gpu();
+    gpu.geometry.vertex_fetch.port.vertex_cycles = 2;
+    const double fitting = cycles(gpu, scene.frame);
+    gpu.host.vram_mb = 1;
+    const double copied = cycles(gpu, scene.frame);
+    EXPECT_NEAR((copied - fitting) / (1.44e6 / 4e9 * gpu.clock.core_mhz * 1e6), 1.0, 0.01);
+    EXPECT_NEAR(static_cast<double>(pipeline::estimate_vertex_path(gpu, scene.frame).cycles) / copied, 1.0, 0.02);
+}
+
+TEST(Host, InstancesOfADrawShareItsCopies) {
+    tests::GeometryScene scene = grass(1000);
+    scene.frame.draws[0].instances.resize(4, scene.frame.draws[0].instances[0]);
+    GpuParams gpu = wide_gpu();
+    gpu.geometry.vertex_fetch.port.vertex_cycles = 2;
+    const double fitting = cycles(gpu, scene.frame);
+    gpu.host.vram_mb = 0.1; // of 0.144
+    gpu.host.outside_gbps = 0.5;
+    EXPECT_NEAR((cycles(gpu, scene.frame) - fitting) / (0.144e6 / 0.5e9 * gpu.clock.core_mhz * 1e6), 1.0, 0.02);
 }
 
 TEST(VertexPath, SameInAllModesAndForEverySeedWithoutJitter) {

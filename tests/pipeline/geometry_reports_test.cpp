@@ -2,7 +2,11 @@
 #include "models/gpu_library.hpp"
 #include "reports/geometry/advice.hpp"
 #include "reports/geometry/calibration.hpp"
+#include "reports/geometry/figures.hpp"
 #include "reports/geometry/json.hpp"
+#include "reports/geometry/page.hpp"
+#include "reports/geometry/tables.hpp"
+#include "reports/geometry/text.hpp"
 #include "reports/study.hpp"
 #include "tests/support/program_run.hpp"
 
@@ -28,6 +32,123 @@ TEST(GeometryReports, EveryRowOfThePublishedTablesIsThere) {
     std::map<std::string, std::size_t> rows;
     for (const reports::PublishedRow& row : reports::load_published_geometry()) rows[row.table] += row.fps.size();
     EXPECT_EQ(rows, (std::map<std::string, std::size_t>{{"T3.1", 16}, {"T3.2", 8}, {"T3.3", 8}, {"T3.4", 20}}));
+}
+
+TEST(GeometryReports, EveryStatementOfThePublishedFiguresIsThere) {
+    std::map<std::string, std::size_t> rows;
+    for (const reports::PublishedFigure& figure : reports::load_published_figures()) {
+        rows[figure.table] += figure.by_gpu.size();
+        EXPECT_NE(figure.origin, reports::PublishedOrigin::measured) << figure.key();
+        EXPECT_FALSE(figure.source.empty()) << figure.key();
+    }
+    EXPECT_EQ(rows, (std::map<std::string, std::size_t>{{"F3.1", 7}, {"F3.2", 7}, {"F3.3", 10}}));
+}
+
+TEST(GeometryReports, RowsThatSayNothingNewAreRowsAndSayWhy) {
+    std::set<std::pair<std::string, std::string>> rows;
+    for (const reports::PublishedRow& row : reports::load_published_geometry())
+        for (const auto& [gpu, fps] : row.fps) rows.emplace(gpu, row.key());
+    for (const reports::PublishedFigure& figure : reports::load_published_figures())
+        for (const auto& [gpu, interval] : figure.by_gpu) rows.emplace(gpu, figure.key());
+    const reports::CalibrationPlan plan = reports::load_calibration_plan();
+    EXPECT_GE(plan.shared.size(), 10U);
+    for (const reports::SharedNumber& number : plan.shared) {
+        EXPECT_TRUE(rows.contains({number.gpu, number.row})) << number.gpu << " " << number.row;
+        EXPECT_FALSE(number.reason.empty()) << number.gpu << " " << number.row;
+        EXPECT_TRUE(models::load_gpu(number.gpu).origins().contains(number.parameter)) << number.parameter;
+    }
+}
+
+namespace {
+
+/// Rows of figures on a GPU, by figure and row: those that begin so.
+std::map<std::string, reports::ValidationRow> figures_of(const std::string& gpu, const std::string& begin) {
+    reports::GeometryRunOptions options = quick();
+    options.threads = 2;
+    std::vector<reports::PublishedFigure> figures = reports::load_published_figures();
+    std::erase_if(figures, [&begin](const auto& figure) { return !figure.key().starts_with(begin); });
+    std::map<std::string, reports::ValidationRow> rows;
+    for (const auto& row : reports::validate_figures(figures, reports::load_calibration_plan(), {gpu}, options))
+        rows[row.key()] = row;
+    return rows;
+}
+
+double frames_per_second(const std::string& gpu, const std::string& key) {
+    const auto rows = reports::load_published_geometry();
+    const pipeline::GpuParams params = reports::gpu_params(gpu);
+    const auto frame = reports::prepare_frame(reports::find_row(rows, key).experiment, params).frame;
+    return reports::run_geometry(params, *frame, Fidelity::estimate).frames_per_second();
+}
+
+} // namespace
+
+TEST(GeometryReports, G2AndG4FiguresAreReadOffTheCurvesOfTheModel) {
+    for (const std::string gpu : {"g70", "r420"}) {
+        const auto throughput = figures_of(gpu, "F3.1"), batches = figures_of(gpu, "F3.2");
+        // One draw of 0.7M vertices is the same in both figures and in T3.4.
+        const double alone = frames_per_second(gpu, "T3.4 none");
+        EXPECT_DOUBLE_EQ(throughput.at("F3.1 0.7M vertices").model, alone) << gpu;
+        EXPECT_DOUBLE_EQ(batches.at("F3.2 one draw call").model, alone) << gpu;
+        EXPECT_NEAR(throughput.at("F3.1 vertices/s of 0.1M over 0.95M").model, 1.0, 0.03) << gpu;
+        EXPECT_EQ(batches.at("F3.2 best number of draw calls").error(), 0) << gpu;
+        EXPECT_LT(batches.at("F3.2 largest ratio of a step, from 1,000 draw calls on").model, 1) << gpu;
+    }
+}
+
+TEST(GeometryReports, G8ColdBytesAreThoseOfTheLinesOfARecord) {
+    for (const std::string gpu : {"g70", "r420"}) {
+        const auto rows = figures_of(gpu, "F3.3 bytes");
+        for (const auto& [n, ratio] : {std::pair{"1", 1.55}, std::pair{"4", 2.41}, std::pair{"8", 2.92}})
+            EXPECT_NEAR(rows.at(std::string("F3.3 bytes saved, cold and random, n = ") + n).model, ratio, 0.1 * ratio)
+                << gpu;
+    }
+}
+
+TEST(GeometryReportsLong, G8InterleavedIsFasterForEveryNumberOfAttributesAndGainsWithIt) {
+    for (const std::string gpu : {"g70", "r420"}) {
+        const auto rows = figures_of(gpu, "F3.3 least");
+        EXPECT_GT(rows.at("F3.3 least gain for n = 1 to 8").model, 1) << gpu;
+        // Estimated; in detail r420, where memory limits, falls by 1% from n = 6 to 7.
+        EXPECT_GT(rows.at("F3.3 least growth of the gain with n").model, 1) << gpu;
+    }
+}
+
+TEST(GeometryReports, G3TheDropOfTheFigureIsAPenaltyAndTheX800HasNone) {
+    const auto g70 = figures_of("g70", "F3.1"), r420 = figures_of("r420", "F3.1");
+    const std::string drop = "F3.1 vertices/s of 0.7M over 2.1M, normals";
+    EXPECT_NEAR(g70.at(drop).model, 4.44, 0.444);
+    EXPECT_EQ(g70.at(drop).status, reports::RowStatus::penalty);
+    EXPECT_EQ(g70.at(drop).parameter, "host.overflow_slowdown");
+    EXPECT_NEAR(r420.at(drop).model, 1.0, 0.1);
+    EXPECT_EQ(r420.at(drop).status, reports::RowStatus::predicted);
+    EXPECT_NEAR(g70.at("F3.1 vertices/s of 0.7M over 2.1M, without indices").model, 1.0, 0.03);
+}
+
+TEST(GeometryReports, RowsOfFiguresAreWrittenLikeThoseOfTables) {
+    reports::ValidationRow row;
+    row.table = "F3.2";
+    row.row = "best number of draw calls";
+    row.gpu = "g70";
+    row.unit = "draw calls";
+    row.low = 500;
+    row.high = 1000;
+    row.model = 2000;
+    row.origin = reports::PublishedOrigin::stated;
+    row.source = "words";
+    reports::GeometryValidation validation{{row}, reports::summarise({row}), Fidelity::estimate};
+    const auto json = reports::validation_json(validation, {}).at("rows").at(0);
+    EXPECT_EQ(json.at("published"), 1000); // what is nearest to the model
+    EXPECT_EQ(json.at("ratio"), 2);
+    EXPECT_EQ(json.at("published_least"), 500);
+    EXPECT_EQ(json.at("origin"), "stated");
+    const std::string text = reports::validation_text(validation, {});
+    EXPECT_NE(text.find("500 to 1000"), std::string::npos) << text;
+    EXPECT_NE(text.find("F3.2 best number of draw calls on g70 (predicted): not explained"), std::string::npos) << text;
+    const std::string csv = reports::validation_tables(validation, {}).front().text();
+    EXPECT_NE(csv.find("best number of draw calls,g70,draw calls,1000,500,1000,2000,2,predicted,stated,words"),
+              std::string::npos)
+        << csv;
+    EXPECT_NE(reports::validation_page(validation, {}).find("500 to 1000"), std::string::npos);
 }
 
 TEST(GeometryReports, CalibratedNumbersOfGpuFilesAreThoseOfThePlan) {
@@ -90,18 +211,25 @@ TEST(GeometryReportsLong, PredictedRowsAreWithinTenPercentAtTheMedian) {
     reports::GeometryRunOptions options;
     options.threads = 2;
     const reports::GeometryValidation validation = reports::validate_geometry({}, options);
-    EXPECT_EQ(validation.rows.size(), 52U);
+    EXPECT_EQ(validation.rows.size(), 76U);
     for (const reports::ValidationRow& row : validation.rows) {
         if (row.status == reports::RowStatus::calibrated) {
             EXPECT_LE(row.error(), 0.03) << row.table << row.row << row.gpu << row.model;
         }
-        if (row.status == reports::RowStatus::predicted && row.error() > reports::large_miss) {
+        if (row.error() > reports::large_miss) {
             EXPECT_FALSE(row.explanation.empty()) << row.table << row.row << row.gpu << row.model;
         }
     }
     ASSERT_EQ(validation.summary.back().gpu, "all");
-    EXPECT_GE(validation.summary.back().predicted, 20U);
-    EXPECT_LE(validation.summary.back().median, 0.10);
+    EXPECT_GE(validation.summary.back().measured.rows, 20U);
+    EXPECT_LE(validation.summary.back().measured.median, 0.10);
+    std::set<std::string> gpus;
+    for (const reports::ErrorSummary& summary : validation.summary) {
+        gpus.insert(summary.gpu);
+        EXPECT_GE(summary.measured.rows, 1U) << summary.gpu;
+        EXPECT_LE(summary.predicted.worst, reports::large_miss) << summary.gpu << " " << summary.predicted.worst_row;
+    }
+    EXPECT_EQ(gpus, (std::set<std::string>{"all", "g70", "nv43", "r420", "rv350"}));
 }
 
 TEST(GeometryReports, EveryStudyCanBeRead) {

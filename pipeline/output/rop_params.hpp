@@ -41,7 +41,7 @@ static_assert(sim::fully_described<RopParams>);
 
 struct RopStats {
     sim::Counter quads, fragments, depth_passed, depth_failed, stores, program_runs, program_cycles, insertions,
-        interlock_stalls, kbuffer_reads, kbuffer_reads_from_tiles, atomics, kept, not_kept, hazards_detected,
+        interlock_stalls, kbuffer_reads, kbuffer_reads_from_tiles, atomics, kept, not_kept, passed_over, hazards_detected,
         hazards_overlooked, clears, copies;
     sim::HighWater queue_max;
     TileCacheStats depth_tiles, colour_tiles, kbuffer_tiles;
@@ -63,6 +63,7 @@ struct RopStats {
             sim::field<&S::atomics>("Atomic minima executed").unit("operations"),
             sim::field<&S::kept>("Fragments added to their pixel's list").unit("fragments"),
             sim::field<&S::not_kept>("Fragments that no list had room for").unit("fragments"),
+            sim::field<&S::passed_over>("Fragments that another pass keeps").unit("fragments"),
             sim::field<&S::hazards_detected>(
                 "Stores whose pixel had another version than the one they were computed from")
                 .unit("fragments"),

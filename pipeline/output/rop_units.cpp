@@ -129,8 +129,10 @@ std::uint32_t Rop::run_append(const Queued& queued) {
     for (std::uint32_t pixel = 0; pixel < 4; ++pixel) {
         if ((queued.task.mask >> pixel & 1) == 0) continue;
         const std::uint32_t order = queued.task.order[pixel];
-        if (lists.per_pixel != 0 && (order < pass_->first_kept || order >= pass_->first_kept + lists.per_pixel))
+        if (lists.per_pixel != 0 && (order < pass_->first_kept || order >= pass_->first_kept + lists.per_pixel)) {
+            ++stats_.passed_over;
             continue;
+        }
         if (stats_.kept >= room) {
             surfaces_.lists->lose(block, pixel);
             ++stats_.not_kept;

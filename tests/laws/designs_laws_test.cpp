@@ -60,6 +60,12 @@ const std::vector<std::pair<std::string, Settings>>& variants() {
                         {"scoreboard.granularity=tile8", "scoreboard.visibility=writeback", "scoreboard.entries=9"}});
         made.push_back({"blender", {"blender.interlock=forward"}});
         made.push_back({"blender", {"blender.interlock=none", "blender.latency=200"}});
+        made.push_back({"interlock", {"interlock.area=tile", "interlock.grants_per_clk=1"}});
+        made.push_back({"interlock", {"interlock.ordered=false"}});
+        made.push_back({"peel-rop", {"peel-rop.retirement=out_of_order", "peel-rop.early_reject=pixel"}});
+        made.push_back({"linked-list", {"linked-list.nodes=400"}});
+        made.push_back({"stencil-routed", {"stencil-routed.samples=2", "stencil-routed.passes=3"}});
+        made.push_back({"batched", {"batched.batches.batch=3", "batched.batches.drain=false"}});
         return made;
     }();
     return list;
@@ -81,6 +87,8 @@ template <class Check>
 void for_every_run(const Settings& more, Check check) {
     for (const Case& one : cases())
         for (const auto& [design, settings] : variants()) {
+            const std::vector<std::string> able = one.replay.designs();
+            if (std::find(able.begin(), able.end(), design) == able.end()) continue;
             SCOPED_TRACE(describe(one, design, settings));
             check(one, design, join(settings, more));
         }
@@ -95,20 +103,21 @@ bool same_picture(const Case& one, const RunResult& run) {
 TEST(Laws, NoHazardMeansTheReferencePictureForEverySeed) {
     std::set<std::uint64_t> outcomes;
     for (const Case& one : cases())
-        for (const std::string& design : support::design_ids())
+        for (const std::string& design : one.replay.designs())
             for (std::uint64_t seed = 1; seed <= 16; ++seed) {
                 SCOPED_TRACE(fmt::format("{}, seed {}", describe(one, design, {}), seed));
                 const RunResult run = one.replay.run(design, jitter, {.seed = seed});
-                const bool same = same_picture(one, run);
+                EXPECT_EQ(run.unexplained_pixels, 0U);
+                // Triangles in another order have a reference of their own: it differs in ties.
+                const bool same = support::keeps_submission(design) ? same_picture(one, run) : run.wrong_pixels == 0;
                 EXPECT_EQ(same, run.wrong_pixels == 0);
-                if (design == "existing") {
-                    EXPECT_TRUE(same || run.hazards.total() > 0);
-                    EXPECT_EQ(run.unexplained_pixels, 0U);
-                    if (&one == &cases()[0]) outcomes.insert(run.cycles);
-                } else {
+                if (support::protects(design)) {
                     EXPECT_EQ(run.hazards.total(), 0U);
-                    EXPECT_TRUE(same);
+                    EXPECT_TRUE(same || (run.overflow_pixels > 0 && !support::holds_everything(design)));
+                } else {
+                    EXPECT_TRUE(same || run.hazards.total() > 0);
                 }
+                if (design == "existing" && &one == &cases()[0]) outcomes.insert(run.cycles);
             }
     EXPECT_GT(outcomes.size(), 4U); // seeds matter
 }
@@ -150,7 +159,8 @@ void for_each_executed_pass(const Replay& replay, const RunResult& run, Visit vi
         if (pass.kind != pipeline::PassKind::draw) continue;
         const pipeline::FragmentStream& stream = replay.streams[next++];
         for (const pipeline::PassResult& executed : run.passes)
-            if (executed.name == pass.name || executed.name.starts_with(pass.name + " layer "))
+            if (executed.name == pass.name || executed.name.starts_with(pass.name + " layer ") ||
+                executed.name.starts_with(pass.name + " pass "))
                 visit(pass, stream, executed.counters);
     }
 }
@@ -166,7 +176,7 @@ void expect_conserved(const pipeline::Pass& pass, const pipeline::FragmentStream
     if (count("early_depth/quads") != 0) {
         EXPECT_EQ(count("early_depth/quads"), quads);
         EXPECT_EQ(count("early_depth/fragments"), alive);
-        alive -= count("early_depth/fragments_rejected");
+        alive -= count("early_depth/fragments_rejected") + count("early_depth/fragments_beyond");
         quads -= count("early_depth/quads_rejected");
     }
     EXPECT_EQ(count("scheduler/quads"), quads);
@@ -177,7 +187,8 @@ void expect_conserved(const pipeline::Pass& pass, const pipeline::FragmentStream
     EXPECT_EQ(count("crossbar/quads"), count("reorder_buffer/retired"));
     EXPECT_EQ(count("rop/quads"), count("reorder_buffer/retired"));
     EXPECT_EQ(count("rop/fragments") + count("fragment/peel_rejects"), alive);
-    EXPECT_EQ(count("rop/depth_passed") + count("rop/depth_failed") + count("rop/stores") + count("rop/program_runs"),
+    EXPECT_EQ(count("rop/depth_passed") + count("rop/depth_failed") + count("rop/stores") + count("rop/program_runs") +
+                  count("rop/kept") + count("rop/not_kept") + count("rop/passed_over"),
               count("rop/fragments"));
     if (!pass.kbuffer) {
         EXPECT_EQ(count("rop/stores") + count("rop/program_runs"), 0U);
@@ -195,6 +206,7 @@ void expect_conserved(const pipeline::Pass& pass, const pipeline::FragmentStream
 
 TEST(Laws, FragmentsThatEnterAStageLeaveItOrAreKilledThere) {
     for_every_run({}, [](const Case& one, const std::string& design, const Settings& settings) {
+        if (!support::keeps_submission(design)) return; // these make streams of their own
         const RunResult run = one.replay.run(design, settings);
         std::uint64_t fragments = 0;
         std::size_t passes = 0;
@@ -216,7 +228,8 @@ TEST(Laws, FragmentsAreConservedThroughAlphaTestAndEarlyDepth) {
     ASSERT_TRUE(replay.frame.needs.early_depth);
     ASSERT_TRUE(replay.frame.needs.alpha_test);
     std::uint64_t rejected = 0, discarded = 0;
-    for (const std::string& design : support::design_ids()) {
+    for (const std::string& design : replay.designs()) {
+        if (!support::keeps_submission(design)) continue;
         SCOPED_TRACE(design);
         const RunResult run = replay.run(design);
         for_each_executed_pass(replay, run, [&](const auto& pass, const auto& stream, const Json& counters) {
@@ -351,7 +364,7 @@ class Watcher final : public sim::Observer {
 } // namespace
 
 TEST(Laws, WatchingChangesNothing) {
-    for (const std::string& design : support::design_ids()) {
+    for (const std::string& design : cases()[0].replay.designs()) {
         SCOPED_TRACE(design);
         Watcher watcher;
         std::atomic<std::uint64_t> quads{0};

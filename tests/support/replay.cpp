@@ -37,6 +37,15 @@ pipeline::RunResult Replay::run(const std::string& design, const std::vector<std
         .run(pipeline::run_reference(other, other_streams));
 }
 
+std::vector<std::string> Replay::designs() const {
+    std::vector<std::string> ids;
+    for (const std::string& id : design_ids()) {
+        sim::Config config;
+        if (!frame.program || models::make_design(id, config)->refuses(*frame.program).empty()) ids.push_back(id);
+    }
+    return ids;
+}
+
 const pipeline::FragmentStream& Replay::kbuffer_stream() const {
     std::size_t next = 0;
     for (const pipeline::Pass& pass : frame.passes) {
@@ -63,6 +72,17 @@ std::vector<std::string> design_ids() {
     std::vector<std::string> ids;
     for (const models::DesignInfo& design : models::designs()) ids.emplace_back(design.id);
     return ids;
+}
+
+bool protects(const std::string& design) {
+    return keeps_submission(design) && design != "existing" && design != "detect";
+}
+
+bool holds_everything(const std::string& design) { return design != "dual-peel" && design != "stencil-routed"; }
+
+bool keeps_submission(const std::string& design) {
+    sim::Config config;
+    return !models::make_design(design, config)->submission().changes();
 }
 
 const pipeline::PassResult& pass_named(const pipeline::RunResult& run, const std::string& name) {

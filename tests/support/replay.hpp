@@ -31,6 +31,9 @@ class Replay {
     pipeline::RunResult run(const std::string& design, const std::vector<std::string>& settings = {},
                             pipeline::MachineOptions options = {}) const;
 
+    /// The designs that can run the frame's program, or all where it has none.
+    std::vector<std::string> designs() const;
+
     /// The stream of the k-buffer pass.
     const pipeline::FragmentStream& kbuffer_stream() const;
 
@@ -44,6 +47,13 @@ std::vector<std::vector<pipeline::QuadId>> quads_by_pixel(const pipeline::Fragme
 
 /// The ids of all designs.
 std::vector<std::string> design_ids();
+
+/// Hazards cannot happen in it.
+bool protects(const std::string& design);
+/// It shows all that the program keeps, however many fragments a pixel gets.
+bool holds_everything(const std::string& design);
+/// The triangles come as the scene has them.
+bool keeps_submission(const std::string& design);
 
 /// Counters of the pass whose name begins with `name`, as the design executed it.
 const pipeline::PassResult& pass_named(const pipeline::RunResult& run, const std::string& name);

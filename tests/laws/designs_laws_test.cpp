@@ -83,12 +83,17 @@ std::string describe(const Case& one, const std::string& design, const Settings&
                        fmt::join(one.options.knobs, " "));
 }
 
+/// The design can run the program of this case.
+bool runs(const Case& one, const std::string& design) {
+    const std::vector<std::string> able = one.replay.designs();
+    return std::find(able.begin(), able.end(), design) != able.end();
+}
+
 template <class Check>
 void for_every_run(const Settings& more, Check check) {
     for (const Case& one : cases())
         for (const auto& [design, settings] : variants()) {
-            const std::vector<std::string> able = one.replay.designs();
-            if (std::find(able.begin(), able.end(), design) == able.end()) continue;
+            if (!runs(one, design)) continue;
             SCOPED_TRACE(describe(one, design, settings));
             check(one, design, join(settings, more));
         }
@@ -283,7 +288,8 @@ TEST(Laws, HitsAndMissesAreAllAccesses) {
         if (run.caches.contains("texture_l1_kbuffer")) {
             const std::uint64_t lines =
                 support::counter(run.stages, "fragment_pipeline/counters/kbuffer_reads") *
-                (std::find(settings.begin(), settings.end(), "existing.atomic_reads=true") != settings.end()
+                (design == "framebuffer-fetch" || // reads all render targets at once
+                         std::find(settings.begin(), settings.end(), "existing.atomic_reads=true") != settings.end()
                      ? 1
                      : one.replay.frame.program->targets());
             EXPECT_EQ(counter(run.caches, "texture_l1_kbuffer/accesses"), lines);
@@ -325,6 +331,7 @@ TEST(Laws, SameInputsGiveTheSameBytes) {
         EXPECT_TRUE(first.reference.colour == second.reference.colour);
         EXPECT_TRUE(first.reference.picture == second.reference.picture);
         for (const auto& [design, settings] : variants()) {
+            if (!runs(one, design)) continue;
             SCOPED_TRACE(describe(one, design, settings));
             const RunResult run = one.replay.run(design, join(settings, jitter), {.seed = 7});
             EXPECT_EQ(support::difference(run, one.replay.run(design, join(settings, jitter), {.seed = 7})), "");

@@ -15,9 +15,9 @@ using Settings = std::vector<std::string>;
 
 double cycles(const RunResult& run) { return static_cast<double>(support::pass_named(run, "geometry").cycles); }
 
+/// Layers over a square of 32 x 32 pixels.
 Replay overlapping(std::uint32_t layers) {
-    return Replay(fmt::format("gen:discs?n={}&overlap={}&width=128&height=128", 40 * std::max(layers, 1U), layers),
-                  {.width = 128, .height = 128});
+    return Replay(fmt::format("gen:stack?n={}&x=0&y=0&w=32&h=32", layers), {.width = 64, .height = 64});
 }
 
 } // namespace

@@ -59,8 +59,8 @@ TEST(PeelRop, K15_RejectionRisesWithSortingFromTheFront) {
 }
 
 TEST(PeelRop, ABoundByPixelRejectsAtLeastWhatABoundByTileDoes) {
-    const Replay replay("gen:discs?n=2000&overlap=40&width=64&height=64&order=front-to-back",
-                        {.width = 64, .height = 64});
+    // A tile that the layers do not cover whole has no bound; its covered pixels do.
+    const Replay replay("gen:stack?n=60&x=1&y=1&w=41&h=38&order=front-to-back", {.width = 48, .height = 48});
     const auto rejected = [&](const char* reject) {
         return counter(replay.run("peel-rop", {fmt::format("peel-rop.early_reject={}", reject)}).stages,
                        early + "fragments_beyond");

@@ -25,7 +25,9 @@ void expect_good_runs(const Replay& replay, const Settings& settings = {}) {
         EXPECT_EQ(run.unexplained_pixels, 0U);
         if (!support::protects(design)) continue;
         EXPECT_EQ(run.hazards.total(), 0U);
-        if (support::holds_everything(design)) EXPECT_EQ(run.wrong_pixels, 0U);
+        if (support::holds_everything(design)) {
+            EXPECT_EQ(run.wrong_pixels, 0U);
+        }
     }
 }
 

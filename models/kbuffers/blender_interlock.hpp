@@ -1,0 +1,35 @@
+// What programmable blenders with different interlocks share. Three ways are known to find out that a quad's pixel is
+// still inside: compare with all quads inside (exact), counters by a hash of the pixel, a ticket per 4x4 tile. Whoever
+// is mistaken for a conflict waits, and no pixel is ever wrong.
+//
+// Source: specification 004, sections 7.3 and 8; descriptions of ROPs that do it (exact: ATTILA; hashed: Vortex; tile:
+// Emerald), which have not been compared before.
+#pragma once
+
+#include "models/kbuffers/configured_design.hpp"
+
+namespace models {
+
+template <class Params>
+pipeline::KBufferPlan blender_with(pipeline::InterlockTest test, const Params& params) {
+    pipeline::KBufferPlan plan;
+    plan.site = pipeline::UpdateSite::blender;
+    plan.blender = {pipeline::BlendInterlock::stall, params.lanes, params.port_bytes, params.latency, test};
+    return plan;
+}
+
+inline std::string blender_refuses(const pipeline::ModifyProgram& program) {
+    return program.needs_texture() ? "it fetches a table, which a blender cannot" : "";
+}
+
+inline nlohmann::ordered_json blender_area(const pipeline::ModifyProgram& program, std::uint32_t latency,
+                                           std::uint64_t interlock_bits, std::uint64_t comparators,
+                                           std::uint32_t lanes) {
+    return {{"added_state_bits", std::uint64_t{latency} * program.bytes_per_pixel() * 8 + interlock_bits},
+            {"interlock_bits", interlock_bits},
+            {"added_comparators", comparators},
+            {"added_alu_lanes", lanes},
+            {"per", "ROP"}};
+}
+
+} // namespace models

@@ -1,0 +1,57 @@
+// A programmable blender whose interlock compares a quad with every one inside (associative memory).
+//
+// Source: specification 004, sections 7.3 and 8.
+#include "models/kbuffers/blender_interlock.hpp"
+
+namespace models {
+
+namespace {
+
+using namespace pipeline;
+
+struct CamParams {
+    std::uint32_t entries = 32;
+    std::uint32_t lanes = 4;
+    std::uint32_t port_bytes = 32;
+    std::uint32_t latency = 16;
+
+    static constexpr auto fields() {
+        using P = CamParams;
+        return std::tuple{
+            sim::field<&P::entries>("Quads that the associative memory of a partition holds")
+                .unit("quads")
+                .range(1, 4096),
+            sim::field<&P::lanes>("Scalar operations per cycle of one ROP's blender").unit("operations").range(1, 1024),
+            sim::field<&P::port_bytes>("Bytes per cycle between one ROP's blender and the tile cache")
+                .unit("bytes")
+                .range(1, 4096),
+            sim::field<&P::latency>("From read to write (L_b)").unit("cycles").range(1, 1000)};
+    }
+};
+static_assert(sim::fully_described<CamParams>);
+
+class Cam final : public ConfiguredDesign<Cam, CamParams> {
+  public:
+    static constexpr std::string_view name = "cam";
+    static constexpr std::string_view text = "programmable blender that compares with every quad inside";
+
+    using ConfiguredDesign::ConfiguredDesign;
+
+    std::string refuses(const ModifyProgram& program) const override { return blender_refuses(program); }
+    KBufferPlan plan(const ModifyProgram&, const View&) const override {
+        KBufferPlan plan = blender_with(InterlockTest::exact, params_);
+        plan.blender.test_entries = params_.entries;
+        return plan;
+    }
+    // Block number and mask of each entry.
+    nlohmann::ordered_json area(const ModifyProgram& program, const View&, std::uint32_t) const override {
+        return blender_area(program, params_.latency, std::uint64_t{params_.entries} * (24 + 4), params_.entries,
+                            params_.lanes);
+    }
+};
+
+} // namespace
+
+DesignInfo cam_design() { return Cam::info(); }
+
+} // namespace models

@@ -1,0 +1,59 @@
+// A programmable blender whose interlock counts the pixels inside by a hash. Two pixels can share a counter, which
+// costs a stall now and then.
+//
+// Source: specification 004, sections 7.3 and 8.
+#include "models/kbuffers/blender_interlock.hpp"
+
+#include <bit>
+
+namespace models {
+
+namespace {
+
+using namespace pipeline;
+
+struct HashedParams {
+    std::uint32_t counters = 256;
+    std::uint32_t lanes = 4;
+    std::uint32_t port_bytes = 32;
+    std::uint32_t latency = 16;
+
+    static constexpr auto fields() {
+        using P = HashedParams;
+        return std::tuple{
+            sim::field<&P::counters>("Counters of a partition, by hash of the pixel (B)")
+                .unit("counters")
+                .range(1, 1 << 24),
+            sim::field<&P::lanes>("Scalar operations per cycle of one ROP's blender").unit("operations").range(1, 1024),
+            sim::field<&P::port_bytes>("Bytes per cycle between one ROP's blender and the tile cache")
+                .unit("bytes")
+                .range(1, 4096),
+            sim::field<&P::latency>("From read to write (L_b)").unit("cycles").range(1, 1000)};
+    }
+};
+static_assert(sim::fully_described<HashedParams>);
+
+class Hashed final : public ConfiguredDesign<Hashed, HashedParams> {
+  public:
+    static constexpr std::string_view name = "hashed";
+    static constexpr std::string_view text = "programmable blender with counters by hash of the pixel";
+
+    using ConfiguredDesign::ConfiguredDesign;
+
+    std::string refuses(const ModifyProgram& program) const override { return blender_refuses(program); }
+    KBufferPlan plan(const ModifyProgram&, const View&) const override {
+        KBufferPlan plan = blender_with(InterlockTest::hashed, params_);
+        plan.blender.test_entries = params_.counters;
+        return plan;
+    }
+    nlohmann::ordered_json area(const ModifyProgram& program, const View&, std::uint32_t) const override {
+        const std::uint64_t bits = std::uint64_t{params_.counters} * std::bit_width(params_.latency);
+        return blender_area(program, params_.latency, bits, 0, params_.lanes);
+    }
+};
+
+} // namespace
+
+DesignInfo hashed_design() { return Hashed::info(); }
+
+} // namespace models

@@ -1,0 +1,50 @@
+// A programmable blender that takes one quad of a 4x4 tile at a time.
+//
+// Source: specification 004, sections 7.3 and 8.
+#include "models/kbuffers/blender_interlock.hpp"
+
+namespace models {
+
+namespace {
+
+using namespace pipeline;
+
+struct TileTicketParams {
+    std::uint32_t lanes = 4;
+    std::uint32_t port_bytes = 32;
+    std::uint32_t latency = 16;
+
+    static constexpr auto fields() {
+        using P = TileTicketParams;
+        return std::tuple{
+            sim::field<&P::lanes>("Scalar operations per cycle of one ROP's blender").unit("operations").range(1, 1024),
+            sim::field<&P::port_bytes>("Bytes per cycle between one ROP's blender and the tile cache")
+                .unit("bytes")
+                .range(1, 4096),
+            sim::field<&P::latency>("From read to write (L_b)").unit("cycles").range(1, 1000)};
+    }
+};
+static_assert(sim::fully_described<TileTicketParams>);
+
+class TileTicket final : public ConfiguredDesign<TileTicket, TileTicketParams> {
+  public:
+    static constexpr std::string_view name = "tile-ticket";
+    static constexpr std::string_view text = "programmable blender that takes one quad of a 4x4 tile at a time";
+
+    using ConfiguredDesign::ConfiguredDesign;
+
+    std::string refuses(const ModifyProgram& program) const override { return blender_refuses(program); }
+    KBufferPlan plan(const ModifyProgram&, const View&) const override {
+        return blender_with(InterlockTest::tile, params_);
+    }
+    // A busy bit for each tile of the tile cache is all it needs.
+    nlohmann::ordered_json area(const ModifyProgram& program, const View&, std::uint32_t) const override {
+        return blender_area(program, params_.latency, params_.latency, 0, params_.lanes);
+    }
+};
+
+} // namespace
+
+DesignInfo tile_ticket_design() { return TileTicket::info(); }
+
+} // namespace models

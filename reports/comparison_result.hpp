@@ -29,7 +29,7 @@ struct SceneFacts {
 /// The frame after the last pass, row 0 first.
 struct FramePixels {
     std::vector<float> kbuffer;   ///< floats_per_pixel of the program for each pixel; empty without a k-buffer
-    std::vector<float> composite; ///< linear RGBA of the finished picture for each pixel
+    std::vector<float> composite; ///< linear RGBA of the finished picture for each pixel; empty when no pass makes one
 };
 
 struct GpuFacts {

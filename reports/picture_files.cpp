@@ -1,12 +1,12 @@
 #include "reports/picture_files.hpp"
 
+#include "pipeline/functional/parallel.hpp"
 #include "reports/atomic_file.hpp"
 #include "reports/pictures.hpp"
 #include "sim/check.hpp"
 
 #include <fmt/format.h>
 #include <functional>
-#include <oneapi/tbb/parallel_for.h>
 #include <optional>
 
 namespace reports {
@@ -75,7 +75,7 @@ class PictureWriter {
     }
 
     std::vector<PictureFile> write(const std::atomic<bool>* stop) {
-        oneapi::tbb::parallel_for(std::size_t{0}, jobs_.size(), [&](std::size_t job) {
+        pipeline::parallel_for(0, jobs_.size(), [&](std::size_t job) {
             if (stop != nullptr && *stop) throw sim::Interrupted();
             jobs_[job]();
         });
@@ -150,16 +150,18 @@ std::vector<PictureFile> write_pictures(const Comparison& comparison, const fs::
     PictureWriter writer(comparison, directory);
     writer.add_overlap();
     prepare("reference");
-    writer.add_frame("reference", comparison.reference);
-    writer.add_layers("reference", comparison.reference);
-    const std::uint32_t factor = writer.difference_factor();
-    for (std::size_t i = 0; i < comparison.runs.size(); ++i) {
-        const pipeline::RunResult& run = comparison.runs[i];
-        prepare(run.design);
-        writer.add_frame(run.design, comparison.pixels[i]);
-        writer.add_hazards(run, comparison.pixels[i]);
-        writer.add_difference(run, comparison.pixels[i], factor);
-        writer.add_layers(run.design, comparison.pixels[i]);
+    for (const pipeline::RunResult& run : comparison.runs) prepare(run.design);
+    if (!comparison.reference.composite.empty()) {
+        writer.add_frame("reference", comparison.reference);
+        writer.add_layers("reference", comparison.reference);
+        const std::uint32_t factor = writer.difference_factor();
+        for (std::size_t i = 0; i < comparison.runs.size(); ++i) {
+            const pipeline::RunResult& run = comparison.runs[i];
+            writer.add_frame(run.design, comparison.pixels[i]);
+            writer.add_hazards(run, comparison.pixels[i]);
+            writer.add_difference(run, comparison.pixels[i], factor);
+            writer.add_layers(run.design, comparison.pixels[i]);
+        }
     }
     return writer.write(stop);
 }

@@ -1,20 +1,43 @@
 #include "pipeline/functional/parallel.hpp"
 
-#include <algorithm>
-#include <oneapi/tbb/info.h>
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/task_arena.h>
+#include "pipeline/functional/task_loop.hpp"
 
 namespace pipeline {
+
+namespace {
+
+class CountAtEnd {
+  public:
+    explicit CountAtEnd(std::atomic<std::size_t>& count) : count_(count) {}
+    ~CountAtEnd() { count_.fetch_add(1, std::memory_order_release); }
+    CountAtEnd(const CountAtEnd&) = delete;
+    CountAtEnd& operator=(const CountAtEnd&) = delete;
+
+  private:
+    std::atomic<std::size_t>& count_;
+};
+
+} // namespace
+
+TaskLoop::TaskLoop(const std::function<void(std::size_t)>& body) : body_(&body) {
+    begun_.store(1, std::memory_order_release);
+}
+
+TaskLoop::~TaskLoop() { static_cast<void>(ended_.load(std::memory_order_acquire)); }
+
+// The load comes before everything else that is read from memory.
+void TaskLoop::piece(std::size_t i) {
+    static_cast<void>(begun_.load(std::memory_order_acquire));
+    const CountAtEnd count(ended_);
+    (*body_)(i);
+}
 
 void parallel_for(unsigned threads, std::size_t count, const std::function<void(std::size_t)>& body) {
     if (threads == 1 || count < 2) {
         for (std::size_t i = 0; i < count; ++i) body(i);
         return;
     }
-    const auto cores = static_cast<unsigned>(tbb::info::default_concurrency());
-    tbb::task_arena arena(static_cast<int>(threads == 0 ? cores : std::min(threads, cores)));
-    arena.execute([&] { tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) { body(i); }); });
+    TaskLoop(body).run(threads, count);
 }
 
 } // namespace pipeline

@@ -128,6 +128,17 @@ TEST_F(ReportsImages, AllPicturesOfAComparison) {
     for (const auto& picture : pictures) EXPECT_TRUE(std::filesystem::exists(folder.path() / picture.file));
 }
 
+TEST_F(ReportsImages, FrameWithoutPictureHasItsFragmentCountsOnly) {
+    auto comparison = ropsim_test::sample_comparison();
+    auto frame = *comparison.frame;
+    frame.program = nullptr;
+    comparison.frame = std::make_shared<const pipeline::Frame>(frame);
+    comparison.reference = {};
+    for (reports::FramePixels& pixels : comparison.pixels) pixels = {};
+    EXPECT_EQ(reports::write_pictures(comparison, folder.path()).size(), 1U);
+    EXPECT_EQ(folder.files(), (std::vector<std::string>{"overlap.exr", "overlap.png"}));
+}
+
 TEST_F(ReportsImages, PicturesOfAnEarlierComparisonDoNotStay) {
     std::filesystem::create_directory(folder.path() / "racy");
     for (const char* name : {"difference_x64.png", "layer7.png", "layer_of_mine.png"})

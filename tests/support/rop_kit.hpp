@@ -1,0 +1,200 @@
+// A ROP partition between a source of quads, a source of k-buffer reads, a sink of commits and a mock memory.
+//
+//     tests::QuadPass pass;
+//     pass.context.end = pipeline::FragmentEnd::kbuffer_store;
+//     pass.quad(0, 0);
+//     tests::RopBench bench(pass, {.shader = pipeline::ShaderSite{}});
+//     bench.run();
+//     EXPECT_EQ(bench.commits->cycles(), (Cycles{3}));
+#pragma once
+
+#include "pipeline/output/rop.hpp"
+#include "tests/support/quad_kit.hpp"
+#include "tests/support/sim_kit.hpp"
+
+#include <algorithm>
+#include <deque>
+#include <map>
+#include <optional>
+
+namespace tests {
+
+/// Answers reads, in order, a fixed time after they came; writes are posted. Notes what came when.
+class MockMemory final : public sim::Component {
+  public:
+    struct Arrival {
+        pipeline::MemoryRequest request;
+        sim::Cycle cycle;
+    };
+    sim::In<pipeline::MemoryRequest> requests_in{*this, "requests_in"};
+    sim::Out<pipeline::MemoryResponse> responses_out{*this, "responses_out"};
+    std::vector<Arrival> arrivals;
+
+    MockMemory(sim::Context context, sim::Cycle latency) : Component(std::move(context)), latency_(latency) {}
+
+  private:
+    sim::Activity tick() override {
+        bool moved = false;
+        for (; requests_in.peek() != nullptr; moved = true) {
+            arrivals.push_back({requests_in.receive(), cycle()});
+            if (!arrivals.back().request.write) due_.push_back({cycle() + latency_, arrivals.back().request.tag});
+        }
+        for (; !due_.empty() && due_.front().first <= cycle() && responses_out.ready(); moved = true) {
+            responses_out.send({due_.front().second});
+            due_.pop_front();
+        }
+        if (moved) return sim::Activity::busy;
+        if (due_.empty()) return sim::Activity::starved;
+        if (due_.front().first <= cycle()) return sim::Activity::blocked;
+        wake_at(due_.front().first);
+        return sim::Activity::memory;
+    }
+
+    sim::Cycle latency_;
+    std::deque<std::pair<sim::Cycle, std::uint32_t>> due_;
+};
+
+struct RopOptions {
+    pipeline::RopParams rop = {};
+    std::optional<pipeline::ShaderSite> shader = {};   ///< of passes that end in kbuffer_store
+    std::optional<pipeline::BlenderSite> blender = {}; ///< of passes that end in kbuffer_blend
+    sim::Cycle memory_latency = 100;                   ///< inside the mock memory
+    std::vector<std::uint32_t> reads = {};             ///< blocks that a texture unit reads, in order; with a shader
+    SourceOptions reads_source = {};
+    SourceOptions source = {};
+    SinkOptions commits = {};
+    sim::Mode mode = sim::Mode::normal;
+    std::uint64_t shuffle = 1;
+};
+
+class RopBench {
+    static constexpr std::uint32_t slots = 1024;
+
+  public:
+    Rig rig;
+    const QuadPass& pass;
+    pipeline::KBufferPlan plan;
+    pipeline::FixedSurfaces fixed;
+    pipeline::KBufferMemory kbuffer;
+    pipeline::StoreHistory history;
+    pipeline::QuadPayloads payloads;
+    pipeline::Rop rop;
+    Source<pipeline::QuadTask> source;
+    MockMemory memory;
+    std::optional<Sink<pipeline::Commit>> commits;                 ///< with a shader or a blender
+    std::optional<Source<pipeline::KBufferRead>> reads;            ///< with a shader
+    std::optional<Sink<pipeline::KBufferReadDone>> reads_done;     ///< with a shader
+    std::optional<Sink<pipeline::LineInvalidation>> invalidations; ///< with texture caches that are kept coherent
+
+    /// Without `tasks`, all quads of the pass. A shader has read what its predecessors stored, and stores its quad's
+    /// number + 1 into every channel.
+    explicit RopBench(const QuadPass& pass_, const RopOptions& options = {},
+                      std::optional<std::vector<pipeline::QuadTask>> tasks = {})
+        : rig(options.mode, 1, options.shuffle),
+          pass(pass_),
+          plan(plan_of(options)),
+          kbuffer(pass.context.layout, pass.program(),
+                  options.shader && options.shader->visibility != pipeline::Visibility::rop_cache),
+          history(pass.context.layout),
+          payloads(slots, pass.program().floats_per_pixel()),
+          rop(rig.context("rop"), options.rop, pass.context, plan, surfaces(options), shape()),
+          source(rig.context("source"), prepared(tasks ? *tasks : pass.quad_tasks(), options), options.source),
+          memory(rig.context("memory"), options.memory_latency) {
+        const std::size_t pixels = std::size_t{pass.stream.width} * pass.stream.height;
+        fixed.depth.assign(pixels, pipeline::farthest_depth(pass.context.depth_format));
+        fixed.winner.assign(pixels, ~pipeline::QuadId{0});
+        sim::connect(source.out, rop.quads_in, {1, 1, 2});
+        sim::connect(rop.memory_out, memory.requests_in, {1, 1, 64});
+        sim::connect(memory.responses_out, rop.memory_in, {1, 1, 64});
+        if (options.shader || options.blender)
+            sim::connect(rop.commits_out, commits.emplace(rig.context("commits"), options.commits).in, {1, 2, 4});
+        if (!rop.invalidations_out.empty())
+            sim::connect(rop.invalidations_out[0], invalidations.emplace(rig.context("invalidations")).in, {1, 4, 8});
+        if (!options.shader) return;
+        reads.emplace(rig.context("reads"), read_messages(options), options.reads_source);
+        sim::connect(reads->out, rop.reads_in[0], {1, 1, 2});
+        sim::connect(rop.reads_out[0], reads_done.emplace(rig.context("reads_done")).in, {1, 1, 2});
+    }
+
+    void run() { rig.simulation.run(); }
+    /// The write-back at the end of a pass; its requests are the ones that come after those so far.
+    void write_back() {
+        rop.write_back_all();
+        run();
+    }
+
+    /// Cycles at which the first and the last quad of a draw were executed.
+    std::pair<sim::Cycle, sim::Cycle> executed(std::uint32_t draw = 0) const {
+        const pipeline::DrawOutput& output = rop.draw_outputs()[draw];
+        return {output.first_cycle, output.last_cycle};
+    }
+    /// First channel that the read with this number found, of its first pixel.
+    float read_value(std::uint32_t read) { return payloads.values(slots - 1 - read, 0)[0]; }
+    sim::Cycle read_at(std::uint32_t read) { return payloads[slots - 1 - read].last_read; }
+    float stored(std::uint32_t block, std::uint32_t float_ = 0) { return kbuffer.latest(block, 0)[float_]; }
+
+    /// Cycles at which requests of a client came to memory, and the tiles of these requests.
+    std::vector<sim::Cycle> request_cycles(pipeline::MemoryClient client) const {
+        std::vector<sim::Cycle> cycles;
+        for (const auto& [request, cycle] : memory.arrivals)
+            if (request.client == client) cycles.push_back(cycle);
+        return cycles;
+    }
+    std::vector<std::uint64_t> requested_tiles(pipeline::MemoryClient client) const {
+        std::vector<std::uint64_t> tiles;
+        for (const auto& [request, cycle] : memory.arrivals)
+            if (request.client == client) tiles.push_back((request.address & surface_mask) / request.bytes);
+        return tiles;
+    }
+
+  private:
+    static constexpr std::uint64_t surface_mask = (std::uint64_t{1} << 36U) - 1;
+
+    static pipeline::KBufferPlan plan_of(const RopOptions& options) {
+        pipeline::KBufferPlan plan;
+        plan.site = options.shader    ? pipeline::UpdateSite::fragment_shader
+                    : options.blender ? pipeline::UpdateSite::blender
+                                      : pipeline::UpdateSite::passes;
+        if (options.shader) plan.shader = *options.shader;
+        if (options.blender) plan.blender = *options.blender;
+        return plan;
+    }
+    pipeline::RopSurfaces surfaces(const RopOptions& options) {
+        return {&fixed, options.shader || options.blender ? &kbuffer : nullptr, &history,
+                options.shader ? &payloads : nullptr};
+    }
+    pipeline::RopShape shape() const { return {1, pass.context.shader_costs.size(), true, true}; }
+
+    std::vector<pipeline::QuadTask> prepared(std::vector<pipeline::QuadTask> tasks, const RopOptions& options) {
+        std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> predecessors;
+        for (pipeline::QuadTask& task : tasks) {
+            if (task.kind != pipeline::QuadKind::quad) continue;
+            const pipeline::Quad& quad = pass.stream.quads[task.quad];
+            for (std::uint32_t pixel = 0; pixel < 4; ++pixel)
+                if ((task.mask >> pixel & 1) != 0)
+                    task.order[pixel] = predecessors[{pass.context.layout.block_of(quad.x, quad.y), pixel}]++;
+            if (options.shader) shade(task);
+        }
+        return tasks;
+    }
+    void shade(pipeline::QuadTask& task) {
+        task.slot = payloads.take();
+        for (std::uint32_t pixel = 0; pixel < 4; ++pixel) {
+            std::fill_n(payloads.values(task.slot, pixel), pass.program().floats_per_pixel(),
+                        static_cast<float>(task.quad + 1));
+            for (std::uint32_t target = 0; target < pass.program().targets(); ++target)
+                payloads.version(task.slot, pixel, target) = {task.order[pixel], task.order[pixel]};
+        }
+    }
+    std::vector<pipeline::KBufferRead> read_messages(const RopOptions& options) const {
+        std::vector<pipeline::KBufferRead> messages;
+        for (const std::uint32_t block : options.reads) {
+            const auto read = static_cast<std::uint32_t>(messages.size());
+            const std::uint64_t targets = (std::uint64_t{1} << pass.program().targets()) - 1;
+            messages.push_back({block, slots - 1 - read, targets, 0, 0, static_cast<std::uint16_t>(read)});
+        }
+        return messages;
+    }
+};
+
+} // namespace tests

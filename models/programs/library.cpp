@@ -25,11 +25,16 @@ std::string pick(std::string_view word, const std::vector<std::string>& known, s
                                       sim::did_you_mean(word, known)));
 }
 
+EntryKind entry_kind(std::string_view name) {
+    const auto& names = sim::EnumNames<EntryKind>::names;
+    return static_cast<EntryKind>(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
 } // namespace
 
 const std::vector<Program>& programs() {
     static const std::vector<Program> list = {
-        {"nearest-k", "keeps the k fragments nearest to the eye, sorted (A6)", {"rgbz", "z"}},
+        {"nearest-k", "keeps the k fragments nearest to the eye, sorted (A6)", {"rgbz", "z", "zo"}},
     };
     return list;
 }
@@ -41,7 +46,7 @@ std::shared_ptr<const pipeline::ModifyProgram> make_program(std::string_view id,
         *std::find_if(programs().begin(), programs().end(), [&](const Program& one) { return one.id == name; });
     const std::string kind = pick(entry, program.entries, fmt::format("program {}: entry", name));
     if (k < 1 || k > 64) throw sim::InputError(fmt::format("program {}: k: expected 1 to 64, got {}", name, k));
-    return make_nearest_k(kind == "z" ? EntryKind::z : EntryKind::rgbz, k);
+    return make_nearest_k(entry_kind(kind), k);
 }
 
 } // namespace models

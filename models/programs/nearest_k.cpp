@@ -8,22 +8,23 @@ namespace models {
 
 namespace {
 
-// `floats` per entry is a template parameter because insert() runs once per fragment of every run.
-template <std::uint32_t floats>
+// The layout of an entry is a template parameter because insert() runs once per fragment of every run.
+template <EntryKind kind>
 class NearestK final : public pipeline::ModifyProgram {
   public:
     explicit NearestK(std::uint32_t k) : ModifyProgram(k, floats) {}
 
     std::string_view id() const override { return "nearest-k"; }
     std::string_view summary() const override {
-        return floats == 1 ? "the k smallest depths, sorted (A6)"
-                           : "the k nearest fragments with their colours, sorted (A6)";
+        return kind == EntryKind::z    ? "the k smallest depths, sorted (A6)"
+               : kind == EntryKind::zo ? "the k nearest fragments with their objects, sorted (A6)"
+                                       : "the k nearest fragments with their colours, sorted (A6)";
     }
     /// A compare per entry, and a move out and a move in per float of it (specification 004, section 7.3).
     pipeline::ProgramCost cost() const override { return {k() * (1 + 2 * floats)}; }
     pipeline::OrderNeed order_need() const override { return pipeline::OrderNeed::any; }
     bool needs_texture() const override { return false; }
-    bool needs_colour() const override { return floats > 1; }
+    bool needs_colour() const override { return kind == EntryKind::rgbz; }
     std::uint32_t depth_slot() const override { return slot; }
 
     void clear(float* pixel) const override {
@@ -47,21 +48,24 @@ class NearestK final : public pipeline::ModifyProgram {
     }
 
     void make_entry(const pipeline::Fragment& fragment, float* entry) const override {
-        for (std::uint32_t i = 0; i < slot; ++i) entry[i] = fragment.rgba[i];
         entry[slot] = fragment.depth;
+        if constexpr (kind == EntryKind::rgbz) std::copy_n(fragment.rgba, 3, entry);
+        if constexpr (kind == EntryKind::zo) entry[1] = static_cast<float>(fragment.draw);
     }
     pipeline::Peeling peeling() const override { return pipeline::Peeling::nearest; }
 
   private:
-    static constexpr std::uint32_t slot = floats - 1;
+    static constexpr std::uint32_t floats = kind == EntryKind::z ? 1 : kind == EntryKind::zo ? 2 : 4;
+    static constexpr std::uint32_t slot = kind == EntryKind::rgbz ? 3 : 0;
 };
 
 } // namespace
 
 std::shared_ptr<const pipeline::ModifyProgram> make_nearest_k(EntryKind entry, std::uint32_t k) {
     CHECK(k >= 1 && k <= 64);
-    if (entry == EntryKind::z) return std::make_shared<const NearestK<1>>(k);
-    return std::make_shared<const NearestK<4>>(k);
+    if (entry == EntryKind::z) return std::make_shared<const NearestK<EntryKind::z>>(k);
+    if (entry == EntryKind::zo) return std::make_shared<const NearestK<EntryKind::zo>>(k);
+    return std::make_shared<const NearestK<EntryKind::rgbz>>(k);
 }
 
 } // namespace models

@@ -192,7 +192,8 @@ TEST(Workloads, GeometryIsOnePassOfDepthsThatReadsAllAttributesOrPositions) {
     EXPECT_EQ(pass_names(all), (Names{"clear", "geometry"}));
     EXPECT_TRUE(all.passes[1].depth.test && all.passes[1].depth.write);
     EXPECT_TRUE(all.passes[1].colour && !all.passes[1].kbuffer);
-    EXPECT_TRUE(all.needs.flat_colours && all.needs.colour_surface);
+    EXPECT_TRUE(all.needs.colours && all.needs.colour_surface);
+    EXPECT_EQ(all.needs.fragment_colour, pipeline::FragmentColour::flat);
     EXPECT_FALSE(all.needs.normals || all.needs.vertex_colours || all.needs.textures || all.needs.alpha_test);
     EXPECT_EQ(all.needs.attributes, (1U << pipeline::semantics) - 1);
     const Names list = left_out(all);

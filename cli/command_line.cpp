@@ -62,7 +62,8 @@ constexpr const char* describe_help = R"(Examples:
 void add_frame_options(CLI::App& command, FrameOptions& options) {
     command
         .add_option("scene", options.scene,
-                    "glTF file (.glb, .gltf), FILE#N for its scene number N, or gen:NAME?key=value&key=value")
+                    "glTF file (.glb, .gltf), FILE#N for its scene number N, tetrahedra (.vtk, .tetm), or "
+                    "gen:NAME?key=value&key=value")
         ->required()
         ->type_name("SCENE");
     command.add_option("--gpu", options.gpu, "Name of a GPU or a .toml file (default neutral)")->type_name("GPU");
@@ -96,7 +97,8 @@ void add_output_options(CLI::App& command, OutputOptions& options) {
 void add_geometry(CLI::App& command, GeometryCommand& options) {
     command
         .add_option("scene", options.scene,
-                    "glTF file (.glb, .gltf), FILE#N for its scene number N, or gen:NAME?key=value&key=value")
+                    "glTF file (.glb, .gltf), FILE#N for its scene number N, tetrahedra (.vtk, .tetm), or "
+                    "gen:NAME?key=value&key=value")
         ->required()
         ->type_name("SCENE");
     command.add_option("--gpu", options.gpu, "Name of a GPU or a .toml file (default neutral)")->type_name("GPU");

@@ -34,7 +34,7 @@ EntryKind entry_kind(std::string_view name) {
 
 const std::vector<Program>& programs() {
     static const std::vector<Program> list = {
-        {"nearest-k", "keeps the k fragments nearest to the eye, sorted (A6)", {"rgbz", "z", "zo"}},
+        {"nearest-k", "keeps the k fragments nearest to the eye, sorted (A6)", {"rgbz", "z", "zo", "zor"}},
     };
     return list;
 }

@@ -5,6 +5,7 @@
 #include "tests/support/replay.hpp"
 #include "traces/workloads/csg_surface.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 namespace {
@@ -54,6 +55,7 @@ void expect_depths(const char* text, Expected expected) {
     const Replay& replay = sphere_and_cube();
     const auto surface = traces::csg_surface(replay.frame, replay.reference.kbuffer, traces::CsgExpression(text, 2));
     std::size_t surfaces = 0, doubtful = 0;
+    double worst = 0.0;
     for (std::uint32_t y = 0; y < size; ++y)
         for (std::uint32_t x = 0; x < size; ++x) {
             const support::PixelRay ray(replay.frame.view, x, y);
@@ -69,10 +71,12 @@ void expect_depths(const char* text, Expected expected) {
                 EXPECT_EQ(found, none) << x << ' ' << y;
             } else {
                 EXPECT_NEAR(found, known, 1e-3 * known) << x << ' ' << y;
+                worst = std::max(worst, std::fabs(found - known) / known);
             }
         }
     EXPECT_GT(surfaces, size * size / 20);
     EXPECT_LT(doubtful, size * size / 50);
+    testing::Test::RecordProperty(fmt::format("worst_relative_error_of_{}", text), fmt::format("{:.3g}", worst));
 }
 
 TEST(Csg, DepthsAreThoseOfTheAnalyticSolids) {

@@ -55,7 +55,9 @@ TEST(Cosine, WithoutVertexNormalsIsThatOfTheFace) {
         const bool front = std::fabs(distance - 2.5) < 1e-4;
         facing += front;
         others += !front;
-        if (front) EXPECT_NEAR(static_cast<double>(colour.r), to_axis, 1e-4);
+        if (front) {
+            EXPECT_NEAR(static_cast<double>(colour.r), to_axis, 1e-4);
+        }
         EXPECT_TRUE(colour.r >= 0.0F && colour.r <= 1.0F);
     });
     EXPECT_GT(facing, 1000U);

@@ -151,12 +151,12 @@ TEST(Vtk, MistakesAreNamedWithTheirLine) {
     EXPECT_EQ(vtk_error(header + points + "CELLS 1 5\n9 0 1 2 3\nCELL_TYPES 1\n10\n"),
               "mesh.vtk: line 8: expected the corners of cell 0 among the 5 numbers of CELLS");
     EXPECT_EQ(vtk_error(header + points + "CELLS 1 5\n4 0 1 2 5\nCELL_TYPES 1\n10\n"),
-              "mesh.vtk: line 11: expected the number of one of 5 points, got 5 in cell 0");
+              "mesh.vtk: line 10: expected the number of one of 5 points, got 5 in cell 0");
     EXPECT_EQ(vtk_error(header + points + "CELLS 1 4\n3 0 1 2\nCELL_TYPES 1\n5\n"),
-              "mesh.vtk: line 11: expected at least one tetrahedron (cell type 10) among 1 cells");
+              "mesh.vtk: line 10: expected at least one tetrahedron (cell type 10) among 1 cells");
     EXPECT_EQ(vtk_error(header + points + cells + "POINT_DATA 4\n"),
               "mesh.vtk: line 12: expected POINT_DATA for 5 points, got 4");
-    EXPECT_EQ(vtk_error(header + points), "mesh.vtk: line 7: expected a section CELLS before the end of the file");
+    EXPECT_EQ(vtk_error(header + points), "mesh.vtk: line 6: expected a section CELLS before the end of the file");
     EXPECT_EQ(vtk_error(header + "POLYGONS 1 4\n"),
               "mesh.vtk: line 5: expected a section of an unstructured grid, got 'POLYGONS'");
 }

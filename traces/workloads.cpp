@@ -14,7 +14,10 @@ namespace traces {
 void WorkloadOptions::set(std::string_view assignment) { add_assignment(values, assignment, "workload"); }
 
 const std::vector<Workload>& workloads() {
-    static const std::vector<Workload> list = {transparency_workload(), opaque_workload(), blended_workload(), geometry_workload(), translucency_workload(), csg_workload()};
+    static const std::vector<Workload> list = {transparency_workload(),   opaque_workload(),       blended_workload(),
+                                               geometry_workload(),       translucency_workload(), csg_workload(),
+                                               depth_of_field_workload(), isosurface_workload(),   volume_workload(),
+                                               particles_workload()};
     return list;
 }
 

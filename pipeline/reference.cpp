@@ -142,7 +142,7 @@ class PassRunner {
 
     std::size_t pixel_ = 0;
     std::size_t lane_ = 0;
-    std::array<float, 4> entry_{};
+    std::array<float, largest_entry> entry_{};
     std::vector<PendingStore> pending_; ///< of the current pixel: [head_, tail_), oldest first
     std::size_t head_ = 0, tail_ = 0;
     bool missed_here_ = false;

@@ -1,5 +1,6 @@
 // Modify program A15, isosurfaces (Bavoil 2007, section 6.3.1): sorts samples of a scalar field as A7 does and looks
-// for iso-values between the two nearest; what it finds is tested against the nearest hit so far.
+// for iso-values between the two nearest; what it finds is tested against the nearest hit so far. Both ends of a
+// segment must have come, so no sample may be more than k - 1 places from its sorted place.
 //
 // A segment from s1 to s2 hits the iso-value v when one of them lies below v and the other does not. A value that is
 // exactly v belongs to what lies above, so a crossing at a sample is counted once, in one of its two segments.

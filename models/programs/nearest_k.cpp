@@ -1,5 +1,6 @@
 #include "models/programs/nearest_k.hpp"
 
+#include "models/programs/insertion.hpp"
 #include "sim/check.hpp"
 
 #include <algorithm>
@@ -20,8 +21,7 @@ class NearestK final : public pipeline::ModifyProgram {
                : has_object         ? "the k nearest fragments with their objects, sorted (A6)"
                                     : "the k nearest fragments with their colours, sorted (A6)";
     }
-    /// A compare per entry, and a move out and a move in per float of it (specification 004, section 7.3).
-    pipeline::ProgramCost cost() const override { return {k() * (1 + 2 * floats)}; }
+    pipeline::ProgramCost cost() const override { return {Pass::operations(k())}; }
     pipeline::OrderNeed order_need() const override { return pipeline::OrderNeed::any; }
     bool needs_texture() const override { return false; }
     bool needs_colour() const override { return kind == EntryKind::rgbz || kind == EntryKind::zor; }
@@ -33,18 +33,9 @@ class NearestK final : public pipeline::ModifyProgram {
     }
 
     bool insert(float* pixel, const float* fragment) const override {
-        float* const end = pixel + k() * floats;
-        float* entry = pixel;
-        const float depth = fragment[slot];
-        while (entry != end && !(depth < entry[slot])) entry += floats;
-        if (entry == end) return false;
-        std::array<float, floats> left;
+        typename Pass::Entry left;
         std::copy_n(fragment, floats, left.begin());
-        std::swap_ranges(left.begin(), left.end(), entry);
-        // What is left over now arrived before every entry of equal depth behind it, so it goes before them.
-        for (entry += floats; entry != end; entry += floats)
-            if (left[slot] <= entry[slot]) std::swap_ranges(left.begin(), left.end(), entry);
-        return true;
+        return Pass::exchange(pixel, k(), left);
     }
 
     void make_entry(const pipeline::Fragment& fragment, float* entry) const override {
@@ -59,6 +50,7 @@ class NearestK final : public pipeline::ModifyProgram {
     static constexpr bool has_object = kind == EntryKind::zo || kind == EntryKind::zor;
     static constexpr std::uint32_t floats = std::array{4U, 1U, 2U, 3U}[static_cast<std::size_t>(kind)];
     static constexpr std::uint32_t slot = kind == EntryKind::rgbz ? 3 : 0;
+    using Pass = Insertion<floats, slot>;
 };
 
 } // namespace

@@ -1,5 +1,6 @@
 // Modify program A16, volume rendering (Bavoil 2007, section 6.3.2): sorts samples of a scalar field as A7 does and
-// composites the gap between the two nearest, whose colour and extinction come from a pre-integrated table.
+// composites the gap between the two nearest, whose colour and extinction come from a pre-integrated table. Both ends
+// of a gap must have come, so no sample may be more than k - 1 places from its sorted place.
 #pragma once
 
 #include "models/programs/preintegration.hpp"

@@ -4,6 +4,7 @@
 #include "pipeline/functional/colour_format.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 
 namespace pipeline {
@@ -116,8 +117,8 @@ std::uint32_t Rop::run_blend(const Queued& queued) {
     bool hazardous = false;
     for (std::uint32_t pixel = 0; pixel < 4; ++pixel) {
         if ((queued.task.mask >> pixel & 1) == 0) continue;
-        float entry[4];
-        program.make_entry(pass_->stream->fragment(queued.task.quad, pixel), entry);
+        std::array<float, largest_entry> entry;
+        program.make_entry(pass_->stream->fragment(queued.task.quad, pixel), entry.data());
         float* stored = surfaces_.kbuffer->latest(block, pixel);
         PixelVersion& version = surfaces_.kbuffer->latest_version(block, pixel);
         const std::uint32_t order = queued.task.order[pixel];
@@ -125,14 +126,14 @@ std::uint32_t Rop::run_blend(const Queued& queued) {
         ledger_.enter(block, pixel, queued.task.quad, queued.task.retired, cycle(), delayed ? written : cycle() + 1);
         ++stats_.program_runs;
         if (!delayed) {
-            if (program.insert(stored, entry)) ++stats_.insertions;
+            if (program.insert(stored, entry.data())) ++stats_.insertions;
             version = {order + 1, version.chain + 1};
             continue;
         }
         pending_blends_.push_back({block, pixel, {order + 1, version.chain + 1}, written});
         const std::size_t value = pending_values_.size();
         pending_values_.insert(pending_values_.end(), stored, stored + floats);
-        if (program.insert(pending_values_.data() + value, entry)) ++stats_.insertions;
+        if (program.insert(pending_values_.data() + value, entry.data())) ++stats_.insertions;
     }
     if (delayed) wake_at(written);
     stats_.program_cycles += cycles;

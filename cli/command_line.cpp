@@ -62,13 +62,20 @@ constexpr const char* describe_help = R"(Examples:
 void add_frame_options(CLI::App& command, FrameOptions& options) {
     command
         .add_option("scene", options.scene,
-                    "glTF file (.glb, .gltf), FILE#N for its scene number N, or gen:NAME?key=value&key=value")
+                    "glTF file (.glb, .gltf), FILE#N for its scene number N, tetrahedra (.vtk, .tetm), or "
+                    "gen:NAME?key=value&key=value")
         ->required()
         ->type_name("SCENE");
     command.add_option("--gpu", options.gpu, "Name of a GPU or a .toml file (default neutral)")->type_name("GPU");
     command.add_option("--workload", options.workload, "Rendering method (default transparency)")->type_name("NAME");
     command.add_option("--k", options.k, "Entries per pixel of the k-buffer (default 4)")->type_name("K");
-    command.add_option("--entry", options.entry, "What an entry holds: rgbz or z (default rgbz)")->type_name("KIND");
+    command.add_option("--entry", options.entry, "What an entry holds: rgbz, z or zo (default rgbz)")
+        ->type_name("KIND");
+    command
+        .add_option("--program", options.program,
+                    "What a fragment does to its pixel: nearest-k, order-and-blend, mlab, or a file *.kb (default "
+                    "nearest-k)")
+        ->type_name("NAME");
     command.add_option("--size", options.size, "Pixels of the frame (default 512x512)")->type_name("WxH");
     command
         .add_option(
@@ -96,7 +103,8 @@ void add_output_options(CLI::App& command, OutputOptions& options) {
 void add_geometry(CLI::App& command, GeometryCommand& options) {
     command
         .add_option("scene", options.scene,
-                    "glTF file (.glb, .gltf), FILE#N for its scene number N, or gen:NAME?key=value&key=value")
+                    "glTF file (.glb, .gltf), FILE#N for its scene number N, tetrahedra (.vtk, .tetm), or "
+                    "gen:NAME?key=value&key=value")
         ->required()
         ->type_name("SCENE");
     command.add_option("--gpu", options.gpu, "Name of a GPU or a .toml file (default neutral)")->type_name("GPU");

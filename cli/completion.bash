@@ -27,7 +27,7 @@ _ropsim_files() {
 
 _ropsim() {
     local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD - 1]} command=${COMP_WORDS[1]}
-    local frame="--gpu --workload --k --entry --size --camera --seed --threads --set --out --json --no-images --help"
+    local frame="--gpu --workload --k --entry --program --size --camera --seed --threads --set --out --json --no-images --help"
     COMPREPLY=()
     if ((COMP_CWORD == 1)); then
         _ropsim_words "compare run geometry validate calibrate study describe --help --version"
@@ -38,7 +38,8 @@ _ropsim() {
         --design) _ropsim_words "$(_ropsim_names designs)"; return ;;
         --designs) _ropsim_list "$(_ropsim_names designs) all"; return ;;
         --workload) _ropsim_words "$(_ropsim_names workloads)"; return ;;
-        --entry) _ropsim_words "rgbz z"; return ;;
+        --entry) _ropsim_words "rgbz z zo"; return ;;
+        --program) _ropsim_words "nearest-k order-and-blend mlab"; _ropsim_files kb; return ;;
         --set) _ropsim_words "$(_ropsim_names params | sed 's/$/=/')"; compopt -o nospace; return ;;
         --size) _ropsim_words "256x256 512x512 1024x1024 1920x1080"; return ;;
         --camera) _ropsim_words "auto 0"; return ;;

@@ -72,8 +72,8 @@ E parse_choice(std::string_view option, const std::string& text) {
     return static_cast<E>(found - names.begin());
 }
 
-// "all" stands for every design.
 std::vector<std::string> parse_designs(std::string_view text) {
+    if (text.empty()) return {"existing", "scoreboard", "blender", "multipass"};
     if (text != "all") return split(text, "--designs");
     std::vector<std::string> names;
     for (const models::DesignInfo& design : models::designs()) names.emplace_back(design.id);
@@ -89,9 +89,11 @@ reports::ComparisonRequest request_of(const FrameOptions& options, const std::st
     request.workload = options.workload;
     request.gpu = options.gpu;
     request.designs = parse_designs(designs);
+    request.only_able_designs = designs.empty() || designs == "all";
     parse_size(options.size, request);
     if (!options.k.empty()) request.workload_settings.push_back("k=" + options.k);
     if (!options.entry.empty()) request.workload_settings.push_back("entry=" + options.entry);
+    if (!options.program.empty()) request.workload_settings.push_back("program=" + options.program);
     constexpr std::string_view workload = "workload.";
     for (const std::string& setting : options.settings)
         if (setting.starts_with(workload))

@@ -18,6 +18,7 @@ struct FrameOptions {
     std::string workload = "transparency";
     std::string k;
     std::string entry;
+    std::string program;
     std::string size = "512x512";
     std::string camera = "auto";
     std::string seed = "1";
@@ -35,7 +36,7 @@ struct OutputOptions {
 struct CompareCommand {
     FrameOptions frame;
     OutputOptions output;
-    std::string designs = "existing,scoreboard,blender,multipass"; ///< or "all"
+    std::string designs; ///< or "all"; empty: the usual ones. Of those two, the ones that can run the program
 };
 
 struct RunCommand {
@@ -87,7 +88,8 @@ struct ShowText {
 using Command = std::variant<CompareCommand, RunCommand, GeometryCommand, ValidateCommand, CalibrateCommand,
                              StudyCommand, DescribeCommand, ShowText>;
 
-/// The request that the options stand for. Throws sim::InputError when a number or size is none.
+/// The request that the options stand for; for `designs` see CompareCommand. Throws sim::InputError when a number or
+/// size is none.
 reports::ComparisonRequest request_of(const FrameOptions& options, const std::string& designs);
 
 /// The same for geometry feed.

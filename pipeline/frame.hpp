@@ -36,6 +36,13 @@ enum class PassKind : std::uint8_t {
 /// premultiplied. `add` sums and saturates (RGBA8). `least` and `greatest` act per channel.
 enum class BlendMode : std::uint8_t { replace, over, add, least, greatest };
 
+/// What the shader makes of a fragment, where a pass asks for its colour.
+enum class FragmentColour : std::uint8_t {
+    lit,   ///< base colour x vertex colour x texture x light
+    flat,  ///< the base colour of its material: nothing is interpolated, lit or discarded
+    cosine ///< red, green and blue are |cos| of the angle between the surface normal and the direction to the eye
+};
+
 struct DepthState {
     bool test = false; ///< LESS against the depth surface; a strict test keeps the first of equal depths
     bool write = false;
@@ -65,9 +72,9 @@ struct Needs {
     bool texcoords = false;
     bool textures = false;
     bool alpha_test = false;
-    bool colours = false;      ///< fragments carry a colour
-    bool flat_colours = false; ///< it is the base colour of their material: nothing is interpolated, lit or discarded
-    bool depth = false;        ///< depth surface and its tile cache
+    bool colours = false; ///< fragments carry a colour
+    FragmentColour fragment_colour = FragmentColour::lit;
+    bool depth = false; ///< depth surface and its tile cache
     bool early_depth = false;
     bool colour_surface = false;
     bool kbuffer = false;

@@ -11,7 +11,11 @@ namespace {
 class PixelComparison {
   public:
     PixelComparison(const ModifyProgram& program, KBufferDifference& result)
-        : program_(program), entry_(program.floats_per_entry()), empty_(program.floats_per_pixel()), result_(result) {
+        : program_(program),
+          entry_(program.floats_per_entry()),
+          sorted_(program.peeling() != Peeling::ranges),
+          empty_(program.floats_per_pixel()),
+          result_(result) {
         program.clear(empty_.data());
     }
 
@@ -32,7 +36,7 @@ class PixelComparison {
             if (!filled(mine)) continue;
             const std::uint32_t before = count_before(run, mine, layer);
             if (before > 0 && before >= count(reference, mine)) ++result_.layers[layer].duplicate;
-            if (layer > 0 && depth(mine) < depth(at(run, layer - 1))) ++result_.layers[layer].unsorted;
+            if (layer > 0 && sorted_ && depth(mine) < depth(at(run, layer - 1))) ++result_.layers[layer].unsorted;
         }
     }
 
@@ -52,6 +56,7 @@ class PixelComparison {
 
     const ModifyProgram& program_;
     std::size_t entry_;
+    bool sorted_; ///< entries of ranges are not: an empty one may lie between others
     std::vector<float> empty_;
     KBufferDifference& result_;
 };

@@ -3,6 +3,7 @@
 #include "pipeline/machine_units.hpp"
 
 #include <algorithm>
+#include <array>
 #include <fmt/format.h>
 #include <utility>
 
@@ -126,14 +127,14 @@ std::uint64_t Machine::run_lists(const FragmentStream& stream) {
     const ModifyProgram& program = *frame_->program;
     const SurfaceLayout& layout = units_->pass.layout;
     std::uint64_t kept = 0;
-    float entry[largest_entry];
+    std::array<float, largest_entry> entry;
     for (std::uint32_t y = 0; y < layout.height; ++y)
         for (std::uint32_t x = 0; x < layout.width; ++x) {
             const std::uint32_t lane = y % 2 * 2 + x % 2;
             float* pixel = layers_.data() + (std::size_t{y} * layout.width + x) * program.floats_per_pixel();
             for (const QuadId quad : units_->lists->fragments(layout.block_of(x, y), lane)) {
-                program.make_entry(stream.fragment(quad, lane), entry);
-                program.insert(pixel, entry);
+                program.make_entry(stream.fragment(quad, lane), entry.data());
+                program.insert(pixel, entry.data());
                 ++kept;
             }
         }

@@ -35,9 +35,9 @@ struct DrawResult {
 struct RunResult {
     std::string design;
     double core_mhz = 0;
-    sim::Cycle cycles = 0;       ///< core cycles from the first command to the last byte written
+    sim::Cycle cycles = 0;        ///< core cycles from the first command to the last byte written
     double sort_milliseconds = 0; ///< of the computer's time before each frame
-    std::uint64_t fragments = 0; ///< fragments that reached the k-buffer (or depth test), over all passes
+    std::uint64_t fragments = 0;  ///< fragments that reached the k-buffer (or depth test), over all passes
 
     HazardCounts hazards;
     std::vector<HazardPair> pairs;              ///< the first `pairs_kept` in order of the victim's store

@@ -63,13 +63,23 @@ std::vector<CatalogueEntry> designs() {
     return entries;
 }
 
+// Cost and size grow with k; they are told for the usual one.
+std::string program_numbers(const models::Program& program, const std::string& entry) {
+    const std::uint32_t k = std::min(program.most_k, 4U);
+    const auto made = models::make_program(program.id, entry, k);
+    return fmt::format("{}, k = {}: {} operations per fragment, {} bytes per pixel, {}{}", entry, k,
+                       made->cost().operations, made->bytes_per_pixel(),
+                       made->order_need() == pipeline::OrderNeed::any ? "any order" : "primitive order",
+                       made->needs_texture() ? ", fetches a table" : "");
+}
+
 std::vector<CatalogueEntry> programs() {
     std::vector<CatalogueEntry> entries;
-    for (const models::Program& program : models::programs())
-        entries.push_back({"programs",
-                           program.id,
-                           fmt::format("{} (entries: {})", program.summary, fmt::join(program.entries, ", ")),
-                           {}});
+    for (const models::Program& program : models::programs()) {
+        std::string summary = program.summary;
+        for (const std::string& entry : program.entries) summary += "; " + program_numbers(program, entry);
+        entries.push_back({"programs", program.id, std::move(summary), {}});
+    }
     return entries;
 }
 
@@ -147,7 +157,7 @@ const std::vector<CatalogueTopic>& catalogue_topics() {
     static const std::vector<CatalogueTopic> topics{
         {"gpus", "simulated GPUs (--gpu)", true, gpus},
         {"designs", "k-buffer designs (--designs, --design)", true, designs},
-        {"programs", "what a fragment does to the entries of its pixel", true, programs},
+        {"programs", "what a fragment does to the entries of its pixel (--program)", true, programs},
         {"workloads", "rendering methods (--workload)", true, workloads},
         {"generators", "scenes made by rule (SCENE)", true, generators},
         {"preparations", "what can be done to meshes (--prepare of ropsim geometry)", true, preparations},

@@ -73,12 +73,24 @@ void read_scene(const ComparisonRequest& request, ComparisonInput& input) {
     input.scene = facts_of(scene, request.camera);
 }
 
-void check_designs(const ComparisonInput& input) {
+void leave_out(ComparisonInput& input, std::size_t design, const std::string& reason) {
+    pipeline::Frame frame = *input.frame;
+    frame.left_out.push_back({fmt::format("design {}", input.designs[design]->id()),
+                              fmt::format("it cannot run the program {}: {}", frame.program->id(), reason)});
+    input.frame = std::make_shared<const pipeline::Frame>(std::move(frame));
+    input.designs.erase(input.designs.begin() + static_cast<std::ptrdiff_t>(design));
+}
+
+void check_designs(ComparisonInput& input, bool only_able) {
     if (!input.frame->program) return;
-    for (const auto& design : input.designs)
-        if (const std::string reason = design->refuses(*input.frame->program); !reason.empty())
-            throw sim::InputError(fmt::format("--designs: '{}' cannot run the program {}: {}", design->id(),
+    for (std::size_t i = input.designs.size(); i-- > 0;) {
+        const std::string reason = input.designs[i]->refuses(*input.frame->program);
+        if (reason.empty()) continue;
+        if (!only_able || input.designs.size() == 1)
+            throw sim::InputError(fmt::format("--designs: '{}' cannot run the program {}: {}", input.designs[i]->id(),
                                               input.frame->program->id(), reason));
+        leave_out(input, i, reason);
+    }
 }
 
 // A frame that cannot fit would be ended by the system without a word.
@@ -174,7 +186,7 @@ ComparisonInput prepare(const ComparisonRequest& request, const Supervision& sup
     enter(supervision, Progress::Phase::reading);
     read_hardware(request, input);
     read_scene(request, input);
-    check_designs(input);
+    check_designs(input, request.only_able_designs);
     check_memory(input, request);
     enter(supervision, Progress::Phase::shading);
     const Stopwatch front_end;

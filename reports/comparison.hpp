@@ -24,6 +24,7 @@ struct ComparisonRequest {
     std::string gpu = "neutral";
     std::vector<std::string> gpu_settings; ///< "section.key=value"; also parameters of designs
     std::vector<std::string> designs;      ///< at least one, no duplicates
+    bool only_able_designs = false;        ///< leave out those that cannot run the frame's program, instead of ending
     std::uint64_t seed = 1;
     unsigned threads = 0; ///< 0 = all cores
 };

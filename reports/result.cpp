@@ -25,7 +25,8 @@ ordered_json scene_json(const Comparison& comparison) {
         json["kbuffer"] = {{"program", frame.program->id()},
                            {"k", frame.program->k()},
                            {"floats_per_entry", frame.program->floats_per_entry()},
-                           {"bytes_per_pixel", frame.program->bytes_per_pixel()}};
+                           {"bytes_per_pixel", frame.program->bytes_per_pixel()},
+                           {"overflow_pixels", overflow_pixels(comparison)}};
     return json;
 }
 

@@ -1,5 +1,7 @@
 #include "reports/run_numbers.hpp"
 
+#include <algorithm>
+
 namespace reports {
 
 double milliseconds(const pipeline::RunResult& run) {
@@ -27,6 +29,14 @@ std::optional<double> bytes_per_fragment(const pipeline::RunResult& run, std::st
     const auto bytes = bytes_over(run, link);
     if (!bytes || run.fragments == 0) return std::nullopt;
     return *bytes / static_cast<double>(run.fragments);
+}
+
+std::uint64_t overflow_pixels(const Comparison& comparison) {
+    if (!comparison.frame->program) return 0;
+    const std::uint32_t k = comparison.frame->program->k();
+    const auto& counts = comparison.depth_complexity;
+    return static_cast<std::uint64_t>(
+        std::count_if(counts.begin(), counts.end(), [k](std::uint32_t fragments) { return fragments > k; }));
 }
 
 } // namespace reports

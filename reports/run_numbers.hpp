@@ -2,6 +2,7 @@
 #pragma once
 
 #include "pipeline/run_result.hpp"
+#include "reports/comparison_result.hpp"
 
 #include <optional>
 #include <string_view>
@@ -20,5 +21,7 @@ double cycles_per_second(const pipeline::RunResult& run);
 std::optional<double> bytes_per_fragment(const pipeline::RunResult& run, std::string_view link);
 /// All bytes over a link.
 std::optional<double> bytes_over(const pipeline::RunResult& run, std::string_view link);
+/// Pixels onto which more than k fragments are drawn; 0 without a k-buffer.
+std::uint64_t overflow_pixels(const Comparison& comparison);
 
 } // namespace reports

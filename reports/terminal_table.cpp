@@ -144,10 +144,13 @@ std::string heading(const Comparison& comparison, TerminalStyle style) {
     std::string method = comparison.frame->workload;
     if (const auto& program = comparison.frame->program)
         method += fmt::format(" ({}, k = {}, {} B per pixel)", program->id(), program->k(), program->bytes_per_pixel());
+    std::string overflow;
+    if (const std::uint64_t pixels = overflow_pixels(comparison); pixels > 0)
+        overflow = fmt::format("; {} pixels have more than k fragments", with_commas(pixels));
     const std::string text =
-        fmt::format("{}: {} triangles drawn at {} x {}; {}; GPU {}; seed {}", comparison.scene.name,
+        fmt::format("{}: {} triangles drawn at {} x {}; {}{}; GPU {}; seed {}", comparison.scene.name,
                     with_commas(comparison.scene.triangles_drawn), comparison.width(), comparison.height(), method,
-                    comparison.gpu.name, comparison.seed);
+                    overflow, comparison.gpu.name, comparison.seed);
     return wrap(text, style.columns, 2);
 }
 

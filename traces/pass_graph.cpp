@@ -12,6 +12,7 @@
 namespace traces {
 
 using pipeline::AlphaMode;
+using pipeline::FragmentColour;
 using pipeline::Frame;
 using pipeline::LeftOut;
 using pipeline::Needs;
@@ -83,7 +84,8 @@ struct Offers {
     bool alpha_test = false;
     bool alpha_in_mask = false; ///< a tested alpha comes from vertex colours, too
     bool textured_mask = false;
-    bool normals = false; ///< of lit materials
+    bool normals = false;     ///< of lit materials
+    bool any_normals = false; ///< of any material
     bool vertex_colours = false;
     bool textures = false;        ///< with coordinates to read them at
     std::uint32_t attributes = 0; ///< all that the geometries have: bits as in mask_of(Semantic)
@@ -100,6 +102,7 @@ void add_draw_to(Offers& offers, const pipeline::Resources& resources, const pip
     offers.alpha_in_mask |= mask && colour != nullptr && colour->components == 4;
     offers.textured_mask |= mask && textured;
     offers.normals |= !material.unlit && geometry.find(Semantic::normal) != nullptr;
+    offers.any_normals |= geometry.find(Semantic::normal) != nullptr;
     offers.vertex_colours |= colour != nullptr;
     offers.textures |= textured;
     for (const auto& attribute : geometry.attributes) offers.attributes |= mask_of(attribute.semantic);
@@ -112,7 +115,7 @@ Offers offers_of(const Frame& frame) {
     return offers;
 }
 
-Needs needs_of(const Frame& frame, const Offers& offers, bool flat_colours) {
+Needs needs_of(const Frame& frame, const Offers& offers, FragmentColour colour) {
     Needs needs;
     for (const Pass& pass : frame.passes) {
         needs.colours |= pass.colour || (pass.kbuffer && frame.program->needs_colour());
@@ -123,12 +126,13 @@ Needs needs_of(const Frame& frame, const Offers& offers, bool flat_colours) {
         needs.attributes |= pass.attributes;
     }
     needs.index_buffer = offers.indices;
-    needs.flat_colours = flat_colours && needs.colours;
-    if (flat_colours) return needs;
+    needs.fragment_colour = colour;
+    if (colour == FragmentColour::flat) return needs;
+    const bool lit = needs.colours && colour == FragmentColour::lit;
     needs.alpha_test = offers.alpha_test;
-    needs.normals = needs.colours && offers.normals;
-    needs.vertex_colours = (needs.colours && offers.vertex_colours) || offers.alpha_in_mask;
-    needs.textures = (needs.colours && offers.textures) || offers.textured_mask;
+    needs.normals = lit ? offers.normals : needs.colours && offers.any_normals;
+    needs.vertex_colours = (lit && offers.vertex_colours) || offers.alpha_in_mask;
+    needs.textures = (lit && offers.textures) || offers.textured_mask;
     needs.texcoords = needs.textures;
     return needs;
 }
@@ -173,8 +177,11 @@ void list_left_out(std::vector<LeftOut>& list, const Needs& needs, const Offers&
         return offered ? unread : missing;
     };
     constexpr const char* flat = "fragments have the base colour of their material";
-    const char* no_colours = needs.flat_colours ? flat : "no pass reads colours";
-    const char* no_reader = needs.flat_colours ? flat : "no pass reads colours and no alpha test reads it";
+    const char* no_colours = "no pass reads colours";
+    const char* no_reader = "no pass reads colours and no alpha test reads it";
+    if (needs.colours && needs.fragment_colour == FragmentColour::flat) no_colours = no_reader = flat;
+    if (needs.colours && needs.fragment_colour == FragmentColour::cosine)
+        no_reader = "fragments have the cosine to their normal for a colour, and no alpha test reads it";
     constexpr const char* no_texture = "no drawn material has a texture and coordinates for it";
     add(needs.index_buffer, "index buffer", "no drawn geometry has indices");
     add((read & mask_of(Semantic::normal)) != 0, "normals",
@@ -228,7 +235,7 @@ void PassGraph::vertex_shader_reads(std::uint32_t attributes) {
     passes_.back().attributes = attributes;
 }
 
-void PassGraph::use_flat_colours() { flat_colours_ = true; }
+void PassGraph::use(pipeline::FragmentColour colour) { fragment_colour_ = colour; }
 
 void PassGraph::add_resolve(std::string name, std::vector<std::string> reads, std::vector<std::string> writes) {
     Pass pass;
@@ -257,7 +264,7 @@ Frame PassGraph::lower() const {
         pass.kbuffer = contains(pass.writes, kbuffer_surface);
     }
     const Offers offers = offers_of(frame);
-    frame.needs = needs_of(frame, offers, flat_colours_);
+    frame.needs = needs_of(frame, offers, fragment_colour_);
     if (!frame.needs.kbuffer) {
         frame.program = nullptr;
         frame.resolve = nullptr;

@@ -33,8 +33,8 @@ class PassGraph {
     /// The vertex shader of the pass added last reads these attributes beside what shading needs: bits as in
     /// pipeline::mask_of().
     void vertex_shader_reads(std::uint32_t attributes);
-    /// All fragments take the base colour of their material, whatever the geometry has; none is discarded.
-    void use_flat_colours();
+    /// What colours all passes of the frame ask their fragments for.
+    void use(pipeline::FragmentColour colour);
     void add_resolve(std::string name, std::vector<std::string> reads, std::vector<std::string> writes);
     /// This surface is what the frame is for.
     void output(std::string surface);
@@ -47,7 +47,7 @@ class PassGraph {
 
   private:
     pipeline::Frame frame_;
-    bool flat_colours_ = false;
+    pipeline::FragmentColour fragment_colour_ = pipeline::FragmentColour::lit;
     std::vector<pipeline::Pass> passes_;
     std::vector<std::string> outputs_;
     std::vector<pipeline::LeftOut> left_out_;

@@ -4,6 +4,7 @@
 #include "traces/generators.hpp"
 #include "traces/gltf_import.hpp"
 #include "traces/scene_bounds.hpp"
+#include "traces/tetrahedra_import.hpp"
 
 #include <filesystem>
 #include <fmt/format.h>
@@ -42,6 +43,7 @@ void finish_scene(Scene& scene) {
 
 Scene load_scene(const std::string& spec) {
     if (spec.starts_with("gen:")) return generate_scene(spec);
+    if (is_tetrahedra_file(spec)) return import_tetrahedra(spec);
     const std::size_t hash = spec.rfind('#');
     std::error_code error; // a file whose own name has a '#' is that file
     if (hash == std::string::npos || std::filesystem::exists(spec, error)) return import_gltf(spec);

@@ -62,7 +62,8 @@ struct Scene {
     std::vector<std::string> notes; ///< what of the input is not drawn or read, one line each
 };
 
-/// Reads a scene: a path to a .gltf or .glb file, `PATH#N` for its scene number N, or `gen:NAME?key=value&key=value`.
+/// Reads a scene: a path to a .gltf or .glb file, `PATH#N` for its scene number N, a .vtk or .tetm file of tetrahedra,
+/// or `gen:NAME?key=value&key=value`.
 /// Throws sim::InputError with one line that names file, place and what was expected.
 Scene load_scene(const std::string& spec);
 

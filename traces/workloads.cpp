@@ -2,18 +2,22 @@
 
 #include "sim/check.hpp"
 #include "sim/suggest.hpp"
+#include "traces/pass_graph.hpp"
 #include "traces/workloads/methods.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <numeric>
 
 namespace traces {
 
 void WorkloadOptions::set(std::string_view assignment) { add_assignment(values, assignment, "workload"); }
 
 const std::vector<Workload>& workloads() {
-    static const std::vector<Workload> list = {transparency_workload(), opaque_workload(), blended_workload(),
-                                               geometry_workload()};
+    static const std::vector<Workload> list = {transparency_workload(),   opaque_workload(),       blended_workload(),
+                                               geometry_workload(),       translucency_workload(), csg_workload(),
+                                               depth_of_field_workload(), isosurface_workload(),   volume_workload(),
+                                               particles_workload()};
     return list;
 }
 
@@ -23,6 +27,23 @@ pipeline::Frame frame_of(const Scene& scene, const pipeline::View& view) {
     frame.draws = scene.draws;
     frame.view = view;
     return frame;
+}
+
+pipeline::Frame kbuffer_frame(pipeline::Frame frame, pipeline::FragmentColour colour) {
+    std::vector<std::uint32_t> all(frame.draws.size());
+    std::iota(all.begin(), all.end(), 0U);
+    PassGraph graph(std::move(frame));
+    graph.use(colour);
+    graph.add_clear("clear k-buffer", {kbuffer_surface});
+    graph.add_draw("geometry", {}, {kbuffer_surface}, std::move(all), true);
+    graph.add_resolve("resolve", {kbuffer_surface}, {picture_surface});
+    graph.output(picture_surface);
+    return graph.lower();
+}
+
+void as_list(WorkloadOptions& options, const std::string& name) {
+    const auto found = options.values.find(name);
+    if (found != options.values.end() && found->is_number()) *found = nlohmann::ordered_json::array({*found});
 }
 
 pipeline::Frame build_frame(const Scene& scene, const pipeline::View& view, const std::string& workload,

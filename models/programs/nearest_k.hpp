@@ -17,8 +17,9 @@
 
 namespace models {
 
-/// What an entry holds: R, G, B and depth (one render target each), or the depth alone (four in one render target).
-enum class EntryKind : std::uint8_t { rgbz, z };
+/// What an entry holds: R, G, B and depth (one render target each), the depth alone (four in one render target), depth
+/// and object, which is the number of the draw (two in one render target), or those two and R.
+enum class EntryKind : std::uint8_t { rgbz, z, zo, zor };
 
 /// Depth of an empty entry: farther than every window depth, and finite, so that differences of entries stay numbers.
 inline constexpr float empty_depth = std::numeric_limits<float>::max();
@@ -30,5 +31,5 @@ std::shared_ptr<const pipeline::ModifyProgram> make_nearest_k(EntryKind entry, s
 
 template <>
 struct sim::EnumNames<models::EntryKind> {
-    static constexpr std::array<std::string_view, 2> names{"rgbz", "z"};
+    static constexpr std::array<std::string_view, 4> names{"rgbz", "z", "zo", "zor"};
 };

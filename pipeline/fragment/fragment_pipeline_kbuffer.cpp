@@ -2,6 +2,7 @@
 #include "pipeline/fragment/fragment_pipeline.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <utility>
 
@@ -9,11 +10,11 @@ namespace pipeline {
 
 void FragmentPipeline::run_program(const QuadTask& task) {
     const FragmentStream& stream = *pass_->stream;
-    float entry[largest_entry];
+    std::array<float, largest_entry> entry;
     for (std::uint32_t pixel = 0; pixel < 4; ++pixel) {
         if ((task.mask >> pixel & 1) == 0) continue;
-        pass_->program->make_entry(stream.fragment(task.quad, pixel), entry);
-        pass_->program->insert(payloads_->values(task.slot, pixel), entry);
+        pass_->program->make_entry(stream.fragment(task.quad, pixel), entry.data());
+        pass_->program->insert(payloads_->values(task.slot, pixel), entry.data());
     }
 }
 

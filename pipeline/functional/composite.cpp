@@ -1,5 +1,6 @@
 #include "pipeline/functional/composite.hpp"
 
+#include "pipeline/functional/eye_depth.hpp"
 #include "sim/check.hpp"
 
 #include <algorithm>
@@ -13,28 +14,20 @@ namespace {
 /// A brightness for a window depth.
 class GreyRamp {
   public:
-    explicit GreyRamp(const glm::mat4& projection) {
-        // z_ndc = (a z + b) / (-z) for a perspective projection, with z the eye-space depth (negative in front).
-        const double a = static_cast<double>(projection[2][2]), b = static_cast<double>(projection[3][2]);
-        if (projection[2][3] != -1.0F) return;
-        const double near = b / (a - 1.0), far = b / (a + 1.0);
-        if (!(near > 0.0 && far > near && std::isfinite(far))) return;
-        perspective_ = true;
-        near_ = near;
-        range_ = std::log(far / near);
-        a_ = a;
-        b_ = b;
+    explicit GreyRamp(const glm::mat4& projection)
+        : depth_(projection), near_(depth_.distance(0.0F)), range_(std::log(depth_.distance(1.0F) / near_)) {
+        logarithmic_ = depth_.perspective() && near_ > 0.0 && range_ > 0.0;
     }
 
     float operator()(float depth) const {
-        double share = static_cast<double>(std::clamp(depth, 0.0F, 1.0F));
-        if (perspective_) share = std::log(b_ / (a_ + (2.0 * share - 1.0)) / near_) / range_;
+        const double share = logarithmic_ ? std::log(depth_.distance(depth) / near_) / range_ : depth;
         return static_cast<float>(0.9 - 0.8 * std::clamp(share, 0.0, 1.0));
     }
 
   private:
-    bool perspective_ = false;
-    double near_ = 1.0, range_ = 1.0, a_ = 0.0, b_ = 0.0;
+    EyeDepth depth_;
+    double near_, range_;
+    bool logarithmic_ = false;
 };
 
 class Compositor {

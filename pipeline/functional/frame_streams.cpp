@@ -4,7 +4,7 @@ namespace pipeline {
 
 std::vector<FragmentStream> rasterize_frame(const Frame& frame, FrontEndOptions options) {
     options.colours = frame.needs.colours;
-    options.flat_colours = frame.needs.flat_colours;
+    options.fragment_colour = frame.needs.fragment_colour;
     options.textures = frame.needs.textures;
     options.alpha_test = frame.needs.alpha_test;
     std::vector<FragmentStream> streams;

@@ -6,6 +6,7 @@
 
 #include "pipeline/draw.hpp"
 #include "pipeline/fragment_stream.hpp"
+#include "pipeline/frame.hpp"
 
 #include <atomic>
 #include <functional>
@@ -15,8 +16,8 @@
 namespace pipeline {
 
 struct FrontEndOptions {
-    bool colours = true;                     ///< fill FragmentStream::colours
-    bool flat_colours = false;               ///< colours are the materials' base colours, nothing else
+    bool colours = true; ///< fill FragmentStream::colours
+    FragmentColour fragment_colour = FragmentColour::lit;
     bool textures = true;                    ///< read textures; without, materials have their base colour only
     bool both_faces = false;                 ///< keep triangles that face away, whatever their material says
     bool alpha_test = true;                  ///< discard fragments of masked materials

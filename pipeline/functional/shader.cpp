@@ -47,23 +47,26 @@ FragmentShader::FragmentShader(const Resources& resources, const Geometry& geome
                                const glm::mat4& model_to_eye, const ShaderOptions& options)
     : options_(options),
       positions_(resources, *geometry.find(Semantic::position)),
-      normals_(
-          reader(resources, geometry, options.colours && !options.flat_colours && !material.unlit, Semantic::normal)),
-      colours_(reader(resources, geometry, !options.flat_colours, Semantic::colour)),
-      texcoords_(
-          reader(resources, geometry, options.textures && material.base_texture >= 0, texcoord(material.texcoord))),
+      model_to_eye_(model_to_eye),
       normal_matrix_(normal_matrix(model_to_eye)),
       texcoord_matrix_(material.uv_transform),
       base_colour_(bounded_vector(material.base_colour, largest_colour)),
       alpha_cutoff_(material.alpha_cutoff),
       discards_(options.alpha_test && material.alpha_mode == AlphaMode::mask),
-      lit_(options.colours && !options.flat_colours && !material.unlit),
+      lit_(options.colours && options.fragment_colour == FragmentColour::lit && !material.unlit),
+      cosine_(options.colours && options.fragment_colour == FragmentColour::cosine),
       keeps_alpha_(material.transparent()) {
+    const bool reads_colour = options.fragment_colour == FragmentColour::lit || discards_;
+    normals_ = reader(resources, geometry, lit_ || cosine_, Semantic::normal);
+    colours_ = reader(resources, geometry, reads_colour, Semantic::colour);
+    texcoords_ = reader(resources, geometry, options.textures && reads_colour && material.base_texture >= 0,
+                        texcoord(material.texcoord));
     if (texcoords_ && needed()) sampler_.emplace(resources.textures[static_cast<std::size_t>(material.base_texture)]);
 }
 
 ShaderCorner FragmentShader::corner(std::uint32_t vertex) const {
     ShaderCorner result;
+    if (cosine_) result.position = glm::vec3(model_to_eye_ * glm::dvec4(glm::vec3(positions_(vertex)), 1.0));
     if (normals_) {
         const glm::dvec3 normal(bounded_vector(glm::vec3((*normals_)(vertex)), largest_normal));
         result.normal = glm::vec3(normal_matrix_ * normal);
@@ -76,26 +79,54 @@ ShaderCorner FragmentShader::corner(std::uint32_t vertex) const {
     return result;
 }
 
-float FragmentShader::face_light(const std::array<std::uint32_t, 3>& vertices) const {
+glm::vec3 FragmentShader::face_normal(const std::array<std::uint32_t, 3>& vertices) const {
     const glm::dvec3 a(positions_(vertices[0])), b(positions_(vertices[1])), c(positions_(vertices[2]));
     const glm::dvec3 normal = normal_matrix_ * glm::cross(b - a, c - a);
     const double length = glm::length(normal);
-    return length > 0.0 && std::isfinite(length) ? lambert(static_cast<float>(std::fabs(normal.z) / length)) : 1.0F;
+    return length > 0.0 && std::isfinite(length) ? glm::vec3(normal / length) : glm::vec3(0.0F);
 }
 
 ShaderTriangle FragmentShader::triangle(const std::array<std::uint32_t, 3>& vertices,
                                         const std::array<glm::vec3, 3>* weights) const {
     ShaderTriangle result;
     for (std::size_t i = 0; i < 3; ++i) result.corners[i] = corner(vertices[i]);
-    if (lit_ && !normals_) result.face_light = face_light(vertices);
+    if ((lit_ || cosine_) && !normals_) result.face_normal = face_normal(vertices);
+    if (lit_ && result.face_normal != glm::vec3(0.0F)) result.face_light = lambert(std::fabs(result.face_normal.z));
     if (weights == nullptr) return result;
 
     const std::array<ShaderCorner, 3> whole = result.corners;
     for (std::size_t i = 0; i < 3; ++i) {
         const glm::vec3& w = (*weights)[i];
+        result.corners[i].position = whole[0].position * w.x + whole[1].position * w.y + whole[2].position * w.z;
         result.corners[i].normal = whole[0].normal * w.x + whole[1].normal * w.y + whole[2].normal * w.z;
         result.corners[i].colour = whole[0].colour * w.x + whole[1].colour * w.y + whole[2].colour * w.z;
         result.corners[i].texcoord = whole[0].texcoord * w.x + whole[1].texcoord * w.y + whole[2].texcoord * w.z;
+    }
+    return result;
+}
+
+// Normals and directions of no length have the cosine 1: such a surface has no edge to be seen from.
+Lanes FragmentShader::cosines(const ShaderTriangle& triangle, const CornerWeights& weights) const {
+    const auto& c = triangle.corners;
+    Lanes result;
+    std::array<Lanes, 3> normal{}, position{};
+    for (int i = 0; i < 3; ++i) {
+        const auto axis = static_cast<std::size_t>(i);
+        if (normals_)
+            normal[axis] = weights.interpolate(c[0].normal[i], c[1].normal[i], c[2].normal[i]);
+        else
+            normal[axis].fill(triangle.face_normal[i]);
+        if (options_.perspective)
+            position[axis] = weights.interpolate(c[0].position[i], c[1].position[i], c[2].position[i]);
+        else
+            position[axis].fill(i == 2 ? 1.0F : 0.0F);
+    }
+    for (std::size_t lane = 0; lane < 4; ++lane) {
+        const glm::dvec3 n(normal[0][lane], normal[1][lane], normal[2][lane]);
+        const glm::dvec3 p(position[0][lane], position[1][lane], position[2][lane]);
+        const double lengths = glm::length(n) * glm::length(p);
+        const double cosine = std::fabs(glm::dot(n, p)) / lengths;
+        result[lane] = lengths > 0.0 && std::isfinite(cosine) ? static_cast<float>(std::min(cosine, 1.0)) : 1.0F;
     }
     return result;
 }
@@ -124,10 +155,8 @@ void FragmentShader::texture(const ShaderTriangle& triangle, const CornerWeights
     for (std::size_t lane = 0; lane < 4; ++lane) output.colours[lane] *= texels[lane];
 }
 
-FragmentShader::Output FragmentShader::shade(const ShaderTriangle& triangle, const CornerWeights& weights,
-                                             unsigned covered) const {
-    Output output;
-    output.alive = static_cast<std::uint8_t>(covered);
+void FragmentShader::colour(const ShaderTriangle& triangle, const CornerWeights& weights, unsigned covered,
+                            Output& output) const {
     output.colours.fill(base_colour_);
     const auto& c = triangle.corners;
     if (colours_)
@@ -136,15 +165,31 @@ FragmentShader::Output FragmentShader::shade(const ShaderTriangle& triangle, con
             for (std::size_t lane = 0; lane < 4; ++lane) output.colours[lane][channel] *= values[lane];
         }
     if (sampler_) texture(triangle, weights, covered, output);
+}
 
+void FragmentShader::discard(Output& output) const {
+    // glTF 2.0, section 3.9.4: a fragment whose alpha equals the cutoff is drawn.
+    for (std::size_t lane = 0; lane < 4; ++lane)
+        if (!(output.colours[lane].a >= alpha_cutoff_)) output.alive &= static_cast<std::uint8_t>(~(1U << lane));
+}
+
+FragmentShader::Output FragmentShader::shade(const ShaderTriangle& triangle, const CornerWeights& weights,
+                                             unsigned covered) const {
+    Output output;
+    output.alive = static_cast<std::uint8_t>(covered);
+    colour(triangle, weights, covered, output);
+    if (discards_) discard(output);
     Lanes lights;
     lights.fill(triangle.face_light);
-    if (normals_) lights = light(triangle, weights);
+    if (cosine_) {
+        output.colours.fill(glm::vec4(1.0F));
+        lights = cosines(triangle, weights);
+    } else if (normals_) {
+        lights = light(triangle, weights);
+    }
     for (std::size_t lane = 0; lane < 4; ++lane) {
         glm::vec4& colour = output.colours[lane];
         const unsigned bit = 1U << lane;
-        // glTF 2.0, section 3.9.4: a fragment whose alpha equals the cutoff is drawn.
-        if (discards_ && !(colour.a >= alpha_cutoff_)) output.alive &= static_cast<std::uint8_t>(~bit);
         const float light = (covered & bit) != 0 ? lights[lane] : 0.0F;
         const float alpha = (covered & bit) == 0 ? 0.0F : keeps_alpha_ ? colour.a : 1.0F;
         colour = glm::vec4(colour.r * light, colour.g * light, colour.b * light, alpha);

@@ -1,7 +1,8 @@
 // The fragment shader: base colour x vertex colour x texture, lit by a lamp on the camera; alpha test.
 //
 // Lighting is a two-sided Lambert term with an ambient floor: ambient + (1 - ambient) * |n.z|, n the unit normal in eye
-// space. Geometry without normals takes the face normal. Unlit materials skip it.
+// space. Geometry without normals takes the face normal. Unlit materials skip it. Instead of a colour the shader can
+// give the cosine between normal and direction to the eye, for Fresnel terms (specification 004, A12).
 #pragma once
 
 #include "pipeline/draw.hpp"
@@ -27,14 +28,16 @@ ShaderCost shader_cost(const Material& material, const Geometry& geometry, const
 /// What the fragments of a draw are asked for.
 struct ShaderOptions {
     bool colours = true;
-    bool flat_colours = false; ///< the base colour, neither lit nor multiplied by vertex colours
+    FragmentColour fragment_colour = FragmentColour::lit;
+    bool perspective = true; ///< the directions to the eye meet there; else they are parallel
     bool textures = true;
     bool alpha_test = true;
 };
 
 /// Attributes at a corner of a triangle.
 struct ShaderCorner {
-    glm::vec3 normal{}; ///< eye space, any length
+    glm::vec3 position{}; ///< eye space; for cosines
+    glm::vec3 normal{};   ///< eye space, any length
     glm::vec4 colour{1.0F};
     glm::vec2 texcoord{}; ///< transformed by the material
 };
@@ -43,6 +46,7 @@ struct ShaderCorner {
 struct ShaderTriangle {
     std::array<ShaderCorner, 3> corners;
     float face_light = 1.0F; ///< where there are no vertex normals
+    glm::vec3 face_normal{}; ///< eye space, of unit length or none; where cosines are wanted
 };
 
 /// The shader of one instance of one draw.
@@ -70,20 +74,25 @@ class FragmentShader {
 
   private:
     ShaderCorner corner(std::uint32_t vertex) const;
-    float face_light(const std::array<std::uint32_t, 3>& vertices) const;
+    glm::vec3 face_normal(const std::array<std::uint32_t, 3>& vertices) const;
+    Lanes cosines(const ShaderTriangle& triangle, const CornerWeights& weights) const;
     Lanes light(const ShaderTriangle& triangle, const CornerWeights& weights) const;
     void texture(const ShaderTriangle& triangle, const CornerWeights& weights, unsigned covered, Output& output) const;
+    void colour(const ShaderTriangle& triangle, const CornerWeights& weights, unsigned covered, Output& output) const;
+    void discard(Output& output) const;
 
     ShaderOptions options_;
     AttributeReader positions_;
     std::optional<AttributeReader> normals_, colours_, texcoords_;
     std::optional<TextureSampler> sampler_;
+    glm::dmat4 model_to_eye_;
     glm::dmat3 normal_matrix_; ///< model to eye space, of unit size
     glm::mat3 texcoord_matrix_;
     glm::vec4 base_colour_;
     float alpha_cutoff_;
     bool discards_; ///< the material is alpha-tested and somebody asks
     bool lit_;
+    bool cosine_;
     bool keeps_alpha_; ///< the surface blends; others are opaque
 };
 

@@ -6,19 +6,26 @@ namespace pipeline {
 ShaderCost shader_cost(const Material& material, const Geometry& geometry, const Needs& needs) {
     const bool tests = needs.alpha_test && material.alpha_mode == AlphaMode::mask;
     ShaderCost cost{1, 0, 1}; // the result's own move and register
-    if (needs.flat_colours || (!needs.colours && !tests)) return cost;
+    if (!needs.colours && !tests) return cost;
+    if (needs.colours && needs.fragment_colour == FragmentColour::flat) return cost;
 
-    if (needs.vertex_colours && geometry.find(Semantic::colour) != nullptr) {
+    const bool reads_colour = needs.fragment_colour == FragmentColour::lit || tests;
+    if (reads_colour && needs.vertex_colours && geometry.find(Semantic::colour) != nullptr) {
         cost.alu += 2; // interpolate, multiply
         cost.registers += 1;
     }
-    if (needs.textures && material.base_texture >= 0 && geometry.find(texcoord(material.texcoord)) != nullptr) {
+    if (reads_colour && needs.textures && material.base_texture >= 0 &&
+        geometry.find(texcoord(material.texcoord)) != nullptr) {
         cost.alu += 2; // interpolate, multiply
         cost.textures += 1;
         cost.registers += 2;
     }
-    if (needs.colours && !material.unlit) {
-        const bool smooth = needs.normals && geometry.find(Semantic::normal) != nullptr;
+    const bool smooth = needs.normals && geometry.find(Semantic::normal) != nullptr;
+    if (needs.colours && needs.fragment_colour == FragmentColour::cosine) {
+        // The normal as below, and the position interpolated; then three dots, multiply, reciprocal root, multiply.
+        cost.alu += (smooth ? 1U : 4U) + 1U + 6U;
+        cost.registers += smooth ? 2U : 3U;
+    } else if (needs.colours && !material.unlit) {
         // Interpolate, or two derivatives and a cross product of two instructions; then dot, reciprocal root, multiply,
         // ambient multiply-add, multiply.
         cost.alu += (smooth ? 1U : 4U) + 5U;

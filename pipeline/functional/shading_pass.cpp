@@ -18,16 +18,19 @@ namespace {
 
 constexpr std::size_t quads_per_piece = 8192;
 
-ShaderOptions shader_options(const FrontEndOptions& options) {
+ShaderOptions shader_options(const FrontEndPlan& plan) {
+    const FrontEndOptions& options = plan.options;
+    const bool flat = options.fragment_colour == FragmentColour::flat;
     return {.colours = options.colours,
-            .flat_colours = options.flat_colours,
-            .textures = options.textures && !options.flat_colours,
-            .alpha_test = options.alpha_test && !options.flat_colours};
+            .fragment_colour = options.fragment_colour,
+            .perspective = plan.view.projection[2][3] != 0.0F,
+            .textures = options.textures && !flat,
+            .alpha_test = options.alpha_test && !flat};
 }
 
 FragmentShader make_shader(const FrontEndPlan& plan, const PlannedInstance& instance) {
     return {plan.resources, *instance.geometry, *instance.material, plan.view.view * *instance.model,
-            shader_options(plan.options)};
+            shader_options(plan)};
 }
 
 /// True when some draw's shader reads a texture.

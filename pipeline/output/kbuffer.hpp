@@ -16,13 +16,15 @@
 
 namespace pipeline {
 
-/// Floats of an entry, at most.
-inline constexpr std::uint32_t largest_entry = 8;
-
 /// Operations of one run of a program for one fragment, in scalar ALU operations.
 struct ProgramCost {
     std::uint32_t operations = 0;
 };
+
+/// Floats that an entry has at most.
+inline constexpr std::uint32_t largest_entry = 8;
+/// Render targets that hold one pixel at most: their masks have 64 bits.
+inline constexpr std::uint32_t most_targets = 64;
 
 enum class OrderNeed : std::uint8_t { any, primitive_order };
 
@@ -54,7 +56,7 @@ class ModifyProgram {
     virtual std::string_view summary() const = 0;
     /// Entries per pixel, 1 to 64.
     std::uint32_t k() const { return k_; }
-    /// Floats per entry: 1 (depth) to 4.
+    /// Floats per entry: 1 (depth) to largest_entry.
     std::uint32_t floats_per_entry() const { return floats_; }
     /// Floats of a pixel behind its entries.
     std::uint32_t state_floats() const { return state_; }

@@ -4,6 +4,7 @@
 #include "pipeline/functional/colour_format.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 
 namespace pipeline {

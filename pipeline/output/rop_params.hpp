@@ -41,8 +41,8 @@ static_assert(sim::fully_described<RopParams>);
 
 struct RopStats {
     sim::Counter quads, fragments, depth_passed, depth_failed, stores, program_runs, program_cycles, insertions,
-        interlock_stalls, kbuffer_reads, kbuffer_reads_from_tiles, atomics, kept, not_kept, passed_over, hazards_detected,
-        hazards_overlooked, clears, copies;
+        interlock_stalls, kbuffer_reads, kbuffer_reads_from_tiles, atomics, kept, not_kept, passed_over,
+        hazards_detected, hazards_overlooked, clears, copies;
     sim::HighWater queue_max;
     TileCacheStats depth_tiles, colour_tiles, kbuffer_tiles;
 

@@ -3,6 +3,7 @@
 #include "pipeline/output/rop.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 
 namespace pipeline {
@@ -51,8 +52,8 @@ std::uint32_t Rop::run_blend(const Queued& queued) {
     std::uint32_t work = 0;
     for (std::uint32_t pixel = 0; pixel < 4; ++pixel) {
         if ((queued.task.mask >> pixel & 1) == 0) continue;
-        float entry[largest_entry];
-        program.make_entry(pass_->stream->fragment(queued.task.quad, pixel), entry);
+        std::array<float, largest_entry> entry;
+        program.make_entry(pass_->stream->fragment(queued.task.quad, pixel), entry.data());
         float* stored = surfaces_.kbuffer->latest(block, pixel);
         PixelVersion& version = surfaces_.kbuffer->latest_version(block, pixel);
         const std::uint32_t order = plan_->order_free ? version.stores : queued.task.order[pixel];
@@ -60,9 +61,9 @@ std::uint32_t Rop::run_blend(const Queued& queued) {
         ledger_.enter(block, pixel, queued.task.quad, queued.task.retired, cycle(),
                       delayed ? delayed_until : cycle() + 1);
         ++stats_.program_runs;
-        work += unit_work(stored, entry);
+        work += unit_work(stored, entry.data());
         if (!delayed) {
-            const bool changed = program.insert(stored, entry);
+            const bool changed = program.insert(stored, entry.data());
             if (changed) ++stats_.insertions;
             version = {order + 1, version.chain + 1};
             if (changed && bounds_out.connected()) note_bound(block, pixel);
@@ -71,7 +72,7 @@ std::uint32_t Rop::run_blend(const Queued& queued) {
         pending_blends_.push_back({block, pixel, {order + 1, version.chain + 1}, delayed_until});
         const std::size_t value = pending_values_.size();
         pending_values_.insert(pending_values_.end(), stored, stored + floats);
-        if (program.insert(pending_values_.data() + value, entry)) ++stats_.insertions;
+        if (program.insert(pending_values_.data() + value, entry.data())) ++stats_.insertions;
     }
     const std::uint32_t cycles = blender_->cycles_of(work, fragments);
     const sim::Cycle written = blender_->enter(block, queued.task.mask, cycle(), cycles);

@@ -97,7 +97,7 @@ class RopBench {
                   options.shader && options.shader->visibility != pipeline::Visibility::rop_cache),
           history(pass.context.layout),
           payloads(slots, pass.program().floats_per_pixel()),
-          rop(rig.context("rop"), options.rop, pass.context, plan, surfaces(options), shape()),
+          rop(rig.context("rop"), options.rop, pass.context, plan, surfaces(options), shape(options)),
           source(rig.context("source"), prepared(tasks ? *tasks : pass.quad_tasks(), options), options.source),
           memory(rig.context("memory"), options.memory_latency) {
         const std::size_t pixels = std::size_t{pass.stream.width} * pass.stream.height;
@@ -163,7 +163,10 @@ class RopBench {
         return {&fixed, options.shader || options.blender ? &kbuffer : nullptr, &history,
                 options.shader ? &payloads : nullptr};
     }
-    pipeline::RopShape shape() const { return {1, pass.context.shader_costs.size(), true, true}; }
+    pipeline::RopShape shape(const RopOptions& options) const {
+        return {1, pass.context.shader_costs.size(), true, true,
+                options.shader || options.blender ? options.rop.cache_tiles : 0};
+    }
 
     std::vector<pipeline::QuadTask> prepared(std::vector<pipeline::QuadTask> tasks, const RopOptions& options) {
         std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> predecessors;

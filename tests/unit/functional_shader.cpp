@@ -301,7 +301,7 @@ TEST(Shading, FlatColoursAreThoseOfTheMaterialWhateverTheGeometryHas) {
     material.base_texture = static_cast<std::int32_t>(scene.add_texture(tests::texture_of_one_colour(1, 1, 0)));
     scene.add(mesh, scene.add_material(material));
     FrontEndOptions options;
-    options.flat_colours = true;
+    options.fragment_colour = FragmentColour::flat;
     const FragmentStream stream = scene.rasterize(options);
     EXPECT_EQ(stream.fragments, 64U);
     EXPECT_EQ(stream.fragments_discarded, 0U);
@@ -341,7 +341,8 @@ TEST(ShaderCost, GrowsWithWhatTheShaderUses) {
     EXPECT_EQ(cost(textured, full).registers, 5U);
     needs = Needs{};
     EXPECT_EQ(cost(textured, full).alu, 1U); // depth only
-    needs.colours = needs.flat_colours = true;
+    needs.colours = true;
+    needs.fragment_colour = FragmentColour::flat;
     EXPECT_EQ(cost(textured, full).alu, 1U);
     EXPECT_EQ(cost(textured, full).textures, 0U);
 }

@@ -1,6 +1,4 @@
-#include "models/programs/library.hpp"
 #include "models/programs/nearest_k.hpp"
-#include "sim/check.hpp"
 #include "sim/random.hpp"
 
 #include <algorithm>
@@ -180,32 +178,6 @@ TEST(NearestK, EntriesLieAsTheContractSays) {
     EXPECT_EQ(rgbz->depth_slot(), 3U);
     EXPECT_TRUE(rgbz->needs_colour());
     EXPECT_FALSE(models::make_nearest_k(EntryKind::z, 4)->needs_colour());
-}
-
-std::string error_of(std::string_view id, std::string_view entry, std::uint32_t k) {
-    try {
-        models::make_program(id, entry, k);
-    } catch (const sim::InputError& error) {
-        return error.what();
-    }
-    return {};
-}
-
-TEST(ProgramLibrary, MakesEveryProgramItLists) {
-    for (const models::Program& program : models::programs())
-        for (const std::string& entry : program.entries) {
-            EXPECT_EQ(models::make_program(program.id, entry, 8)->id(), program.id);
-            EXPECT_EQ(models::make_program(program.id, entry, 8)->k(), 8U);
-        }
-}
-
-TEST(ProgramLibrary, ErrorsNameWhatWasExpected) {
-    EXPECT_EQ(error_of("nearest_k", "z", 4),
-              "program: expected one of nearest-k, got 'nearest_k'; did you mean 'nearest-k'?");
-    EXPECT_EQ(error_of("nearest-k", "rgbx", 4),
-              "program nearest-k: entry: expected one of rgbz, z, got 'rgbx'; did you mean 'rgbz'?");
-    EXPECT_EQ(error_of("nearest-k", "z", 0), "program nearest-k: k: expected 1 to 64, got 0");
-    EXPECT_EQ(error_of("nearest-k", "z", 65), "program nearest-k: k: expected 1 to 64, got 65");
 }
 
 } // namespace

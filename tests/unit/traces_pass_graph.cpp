@@ -192,7 +192,8 @@ TEST(Workloads, GeometryIsOnePassOfDepthsThatReadsAllAttributesOrPositions) {
     EXPECT_EQ(pass_names(all), (Names{"clear", "geometry"}));
     EXPECT_TRUE(all.passes[1].depth.test && all.passes[1].depth.write);
     EXPECT_TRUE(all.passes[1].colour && !all.passes[1].kbuffer);
-    EXPECT_TRUE(all.needs.flat_colours && all.needs.colour_surface);
+    EXPECT_TRUE(all.needs.colours && all.needs.colour_surface);
+    EXPECT_EQ(all.needs.fragment_colour, pipeline::FragmentColour::flat);
     EXPECT_FALSE(all.needs.normals || all.needs.vertex_colours || all.needs.textures || all.needs.alpha_test);
     EXPECT_EQ(all.needs.attributes, (1U << pipeline::semantics) - 1);
     const Names list = left_out(all);
@@ -252,7 +253,7 @@ TEST(Workloads, OptionsAreCheckedByName) {
     EXPECT_EQ(error_of({"K=4"}), "workload transparency: unknown key 'K'");
     EXPECT_EQ(error_of({"opacty=0.5"}), "workload transparency: unknown key 'opacty'; did you mean 'opacity'?");
     EXPECT_EQ(error_of({"entry=rgb"}),
-              "workload transparency: entry: expected one of rgbz | z, got \"rgb\"; did you mean 'rgbz'?");
+              "workload transparency: entry: expected one of rgbz | z | zo | zor, got \"rgb\"; did you mean 'rgbz'?");
     EXPECT_EQ(error_of({"opacity=1.5"}), "workload transparency: opacity: expected number 0 to 1, got 1.5");
     EXPECT_EQ(error_of({"k"}), "workload: expected KEY=VALUE, got 'k'");
     EXPECT_EQ(error_of({"k=1", "k=2"}), "workload: 'k' is set twice");
@@ -262,10 +263,12 @@ TEST(Workloads, OptionsAreCheckedByName) {
 }
 
 TEST(Workloads, EveryOneOfTheTableBuildsAFrame) {
+    const traces::Scene field = traces::load_scene("gen:tetrahedra?n=1"); // has what any of them asks for
+    const pipeline::View view = traces::make_view(field, "auto", 64, 64);
     for (const traces::Workload& workload : traces::workloads()) {
         EXPECT_FALSE(workload.summary.empty());
         EXPECT_FALSE(workload.parameters.empty());
-        EXPECT_FALSE(frame_with({}, workload.id).passes.empty());
+        EXPECT_FALSE(traces::build_frame(field, view, workload.id).passes.empty()) << workload.id;
     }
 }
 

@@ -17,6 +17,11 @@ Generator stack_generator();
 Generator quads_generator();
 Generator random_quads_generator();
 Generator discs_generator();
+Generator tetrahedra_generator();
+Generator particles_generator();
+Generator csg_generator();
+Generator slabs_generator();
+Generator planes_generator();
 
 /// A row of the table; `build` makes the scene (all but its name, hash and counts) from the parameters.
 template <sim::Described P, class Build>

@@ -42,7 +42,7 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const Geom
     std::iota(all.begin(), all.end(), 0U);
 
     PassGraph graph(std::move(frame));
-    graph.use_flat_colours();
+    graph.use(pipeline::FragmentColour::flat);
     graph.add_clear("clear", {depth_surface, colour_surface});
     graph.add_draw("geometry", {depth_surface}, {depth_surface, colour_surface}, std::move(all));
     if (params.reads == ReadAttributes::all) graph.vertex_shader_reads(every_attribute);

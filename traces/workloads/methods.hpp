@@ -14,6 +14,12 @@ Workload transparency_workload();
 Workload opaque_workload();
 Workload blended_workload();
 Workload geometry_workload();
+Workload translucency_workload();
+Workload csg_workload();
+Workload depth_of_field_workload();
+Workload isosurface_workload();
+Workload volume_workload();
+Workload particles_workload();
 
 /// A row of the table of workloads; `build` takes (scene, view, parameters).
 template <sim::Described P, class Build>
@@ -27,5 +33,12 @@ Workload make_workload(std::string id, std::string summary, Build build) {
 
 /// What frames of all workloads have in common: the scene with all its draws, seen through `view`.
 pipeline::Frame frame_of(const Scene& scene, const pipeline::View& view);
+
+/// The graph of the methods that do nothing but fill a k-buffer: clear, all draws with both faces through the frame's
+/// program, and the picture that its resolve makes.
+pipeline::Frame kbuffer_frame(pipeline::Frame frame, pipeline::FragmentColour colour = pipeline::FragmentColour::lit);
+
+/// Makes a list of one of a parameter that may be a number or a list of numbers.
+void as_list(WorkloadOptions& options, const std::string& name);
 
 } // namespace traces

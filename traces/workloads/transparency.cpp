@@ -2,13 +2,20 @@
 //
 // Source: Bavoil 2007, sections 4.4 and 6.1.1 (specification 004: workload W2, programs A6 and A11). Whether one pass
 // with a k-buffer does it or k passes of depth peeling (W3) is the design's choice, so the graph is the same for both.
+// Instead of A6 a program that composites may run: A7, multi-layer alpha blending, or one that the user wrote.
 #include "models/programs/library.hpp"
 #include "models/programs/nearest_k.hpp"
 #include "pipeline/output/kbuffer_design.hpp" // names of the depth formats
+#include "sim/check.hpp"
+#include "sim/suggest.hpp"
 #include "traces/pass_graph.hpp"
 #include "traces/workloads/methods.hpp"
 
+#include <algorithm>
 #include <array>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <string>
 
 namespace traces {
 
@@ -32,6 +39,7 @@ namespace {
 
 struct TransparencyParams {
     std::uint32_t k = 4;
+    std::string program = "nearest-k";
     models::EntryKind entry = models::EntryKind::rgbz;
     TransparentDraws transparent = TransparentDraws::all;
     Faces faces = Faces::both;
@@ -43,7 +51,9 @@ struct TransparencyParams {
         using P = TransparencyParams;
         return std::tuple(
             sim::field<&P::k>("layers kept per pixel").unit("layers").range(1, 64),
-            sim::field<&P::entry>("what a layer keeps: colour and depth, or depth"),
+            sim::field<&P::program>("what a fragment does to its pixel: nearest-k, order-and-blend, mlab, or a program "
+                                    "of the user's (a file *.kb)"),
+            sim::field<&P::entry>("what a layer of nearest-k keeps: colour and depth, depth, or depth and draw"),
             sim::field<&P::transparent>("which draws are transparent: all, or those whose material is (the others are "
                                         "drawn first, with a depth buffer)"),
             sim::field<&P::faces>(
@@ -70,9 +80,22 @@ Split split(const pipeline::Frame& frame, TransparentDraws which) {
     return result;
 }
 
+models::ProgramChoice program_of(const TransparencyParams& params) {
+    constexpr std::array<std::string_view, 3> known{"nearest-k", "order-and-blend", "mlab"};
+    if (!params.program.ends_with(".kb") && std::find(known.begin(), known.end(), params.program) == known.end())
+        throw sim::InputError(fmt::format("workload transparency: program: expected {} or a file *.kb, got '{}'{}",
+                                          fmt::join(known, ", "), params.program,
+                                          sim::did_you_mean(params.program, {known.begin(), known.end()})));
+    const bool usual = params.entry == models::EntryKind::rgbz;
+    return models::choose_program(
+        params.program, {usual ? std::string() : std::string(sim::enum_name(params.entry)), params.k, params.opacity});
+}
+
 pipeline::Frame build(const Scene& scene, const pipeline::View& view, const TransparencyParams& params) {
     pipeline::Frame frame = frame_of(scene, view);
-    frame.program = models::make_program("nearest-k", sim::enum_name(params.entry), params.k);
+    const models::ProgramChoice choice = program_of(params);
+    frame.program = choice.program;
+    frame.resolve = choice.picture;
     frame.opacity = params.opacity;
     frame.background = {params.background[0], params.background[1], params.background[2], 1.0F};
     frame.depth_format = params.depth_format;

@@ -1,0 +1,48 @@
+// Appends instructions and keeps their limits.
+#pragma once
+
+#include "models/programs/language/code.hpp"
+#include "models/programs/language/lexer.hpp"
+
+namespace models::language {
+
+/// A float that is known, or the place where it lies.
+struct Value {
+    bool constant = false;
+    float number = 0.0F;
+    Operand operand = 0;
+};
+
+class Emitter {
+  public:
+    /// @param first_temporary  local from which on temporaries may lie
+    Emitter(const Source& source, std::uint32_t first_temporary)
+        : source_(source), first_temporary_(first_temporary), next_temporary_(first_temporary) {}
+
+    void begin_statement(Place place) {
+        place_ = place;
+        next_temporary_ = first_temporary_;
+    }
+
+    void emit(Instruction instruction);
+    /// A jump to be aimed later.
+    std::size_t emit_jump(Instruction instruction);
+    /// Aims it at what comes next.
+    void aim(std::size_t jump);
+
+    Operand temporary();
+    /// Where a value can be read.
+    Operand read(const Value& value);
+
+    Code take();
+
+  private:
+    Operand pooled(float number);
+
+    const Source& source_;
+    std::uint32_t first_temporary_, next_temporary_;
+    Place place_;
+    Code code_;
+};
+
+} // namespace models::language

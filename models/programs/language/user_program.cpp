@@ -1,0 +1,137 @@
+#include "models/programs/language/user_program.hpp"
+
+#include "models/programs/finite.hpp"
+#include "models/programs/language/checker.hpp"
+#include "models/programs/language/interpreter.hpp"
+#include "models/programs/language/parser.hpp"
+#include "models/programs/pictures.hpp"
+#include "ropsim_build.hpp"
+#include "sim/check.hpp"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+
+namespace models {
+
+namespace {
+
+namespace fs = std::filesystem;
+using language::most_locals;
+
+constexpr std::uintmax_t longest_text = 1U << 20; ///< bytes
+
+/// The registers of one run.
+class Locals {
+  public:
+    explicit Locals(const language::Code& code) { std::fill_n(floats_.begin(), code.locals, 0.0F); }
+    float& operator[](std::uint32_t i) { return floats_[i]; }
+    float* data() { return floats_.data(); }
+
+  private:
+    std::array<float, most_locals> floats_;
+};
+
+class UserProgram final : public pipeline::ModifyProgram {
+  public:
+    UserProgram(language::Program program, language::CompiledProgram compiled, std::uint32_t entries)
+        : ModifyProgram(entries, static_cast<std::uint32_t>(program.entry.size()),
+                        static_cast<std::uint32_t>(program.state.size())),
+          program_(std::move(program)),
+          compiled_(std::move(compiled)),
+          cost_{language::longest_path(compiled_.insert)} {}
+
+    std::string_view id() const override { return program_.id; }
+    std::string_view summary() const override { return program_.summary; }
+    pipeline::ProgramCost cost() const override { return cost_; }
+    pipeline::OrderNeed order_need() const override { return program_.order; }
+    bool needs_texture() const override { return false; }
+    bool needs_colour() const override { return program_.needs_colour; }
+    std::uint32_t depth_slot() const override { return program_.depth_slot; }
+
+    void clear(float* pixel) const override { std::copy(compiled_.clear.begin(), compiled_.clear.end(), pixel); }
+
+    bool insert(float* pixel, const float* fragment) const override {
+        Locals locals(compiled_.insert);
+        for (std::uint32_t i = 0; i < floats_per_entry(); ++i) locals[i] = finite(fragment[i]);
+        return language::run(compiled_.insert, pixel, locals.data());
+    }
+
+    void make_entry(const pipeline::Fragment& fragment, float* entry) const override {
+        Locals locals(compiled_.make_entry);
+        for (std::uint32_t i = 0; i < 4; ++i) locals[i] = fragment.rgba == nullptr ? 0.0F : finite(fragment.rgba[i]);
+        locals[4] = finite(fragment.depth);
+        locals[5] = static_cast<float>(fragment.draw);
+        std::fill_n(entry, floats_per_entry(), 0.0F);
+        language::run(compiled_.make_entry, entry, locals.data());
+    }
+
+    bool drains() const override { return program_.has_drain; }
+    void drain(float* pixel) const override {
+        Locals locals(compiled_.drain);
+        language::run(compiled_.drain, pixel, locals.data());
+    }
+
+    pipeline::Peeling peeling() const override { return program_.peeling; }
+
+  private:
+    language::Program program_;
+    language::CompiledProgram compiled_;
+    pipeline::ProgramCost cost_;
+};
+
+std::shared_ptr<const pipeline::Resolve> picture_of(const language::Program& program) {
+    if (program.picture == language::Picture::layers) return nullptr;
+    const bool of_state = program.picture == language::Picture::state;
+    const auto& fields = of_state ? program.state : program.entry;
+    ColourSlots slots{};
+    constexpr std::array<std::string_view, 4> names{"r", "g", "b", "t"};
+    for (std::size_t i = 0; i < names.size(); ++i)
+        slots[i] = static_cast<std::uint32_t>(
+            std::find_if(fields.begin(), fields.end(), [&](const auto& field) { return field.name == names[i]; }) -
+            fields.begin());
+    return of_state ? state_picture(slots) : node_picture(slots);
+}
+
+fs::path find(std::string_view path) {
+    std::error_code failed;
+    if (fs::exists(path, failed)) return path;
+    const fs::path name(path);
+    const auto installed = ropsim_build::find_data(fs::path("models/programs") / name);
+    return !name.has_parent_path() && installed ? *installed : name;
+}
+
+} // namespace
+
+ProgramChoice user_program(std::string name, std::string text, std::uint32_t k, const language::Overrides& overrides) {
+    if (text.size() > longest_text)
+        throw sim::InputError(
+            fmt::format("{}: expected a program of at most {} bytes, got {}", name, longest_text, text.size()));
+    language::Program program = language::parse({std::move(name), std::move(text)});
+    language::check(program);
+    const std::uint32_t entries = k == 0 ? program.default_k : k;
+    if (entries < program.least_k || entries > program.most_k)
+        throw sim::InputError(fmt::format("{}: k: expected {} to {}, got {}", program.source.name, program.least_k,
+                                          program.most_k, entries));
+    language::CompiledProgram compiled = language::compile(program, entries, overrides);
+    auto picture = picture_of(program);
+    return {std::make_shared<const UserProgram>(std::move(program), std::move(compiled), entries), std::move(picture)};
+}
+
+ProgramChoice load_user_program(std::string_view path, std::uint32_t k, const language::Overrides& overrides) {
+    const fs::path file = find(path);
+    std::error_code failed;
+    if (!fs::is_regular_file(file, failed)) throw sim::InputError(fmt::format("{}: expected a file", path));
+    if (const std::uintmax_t bytes = fs::file_size(file, failed); failed || bytes > longest_text)
+        throw sim::InputError(fmt::format("{}: expected a program of at most {} bytes", path, longest_text));
+    std::ifstream stream(file, std::ios::binary);
+    std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+    if (!stream) throw sim::InputError(fmt::format("{}: cannot be read", path));
+    return user_program(std::string(path), std::move(text), k, overrides);
+}
+
+} // namespace models

@@ -1,0 +1,21 @@
+// Modify programs that users write: text in the k-buffer language (README.md of models/programs), run by an
+// interpreter.
+#pragma once
+
+#include "models/programs/language/generator.hpp"
+#include "models/programs/program_choice.hpp"
+
+#include <string>
+#include <string_view>
+
+namespace models {
+
+/// The program of a text. `name` stands for it in messages.
+/// @param k entries; 0: as many as the text says. Throws sim::InputError "name:line:column: expected ..., got ...".
+ProgramChoice user_program(std::string name, std::string text, std::uint32_t k,
+                           const language::Overrides& overrides = {});
+
+/// The program in a file: one of that path, or else of that name in the data folder models/programs.
+ProgramChoice load_user_program(std::string_view path, std::uint32_t k, const language::Overrides& overrides = {});
+
+} // namespace models

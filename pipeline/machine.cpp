@@ -89,11 +89,7 @@ std::uint32_t Machine::kbuffer_tiles() const {
     if (!units_->kbuffer && !units_->lists) return 0;
     if (!frame_->needs.kbuffer || !plan_.shader.tile_memory) return gpu_.rop.cache_tiles;
     const SurfaceLayout& layout = units_->pass.layout;
-    const std::uint32_t tiles = (layout.tiles_x() / layout.partitions + 1) * layout.tiles_y();
-    if (tiles > TileCache::none - 1)
-        throw sim::InputError(fmt::format("design {}: {}x{} pixels do not fit into the tile memory of {} partitions",
-                                          design_->id(), layout.width, layout.height, layout.partitions));
-    return std::max(tiles, 1U);
+    return (layout.tiles_x() / layout.partitions + 1) * layout.tiles_y();
 }
 
 void Machine::link() {

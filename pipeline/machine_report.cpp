@@ -95,7 +95,8 @@ void Machine::list_units(RunResult& result) const {
     part(uses_colour(), "colour tile cache", "no pass writes colour");
     for (const LeftOut& item : frame_->left_out)
         if (std::none_of(result.left_out.begin(), result.left_out.end(),
-                         [&](const auto& listed) { return listed.first == item.unit; }))
+                         [&](const auto& listed) { return listed.first == item.unit; }) &&
+            std::find(result.built.begin(), result.built.end(), item.unit) == result.built.end())
             result.left_out.emplace_back(item.unit, item.reason);
 }
 

@@ -112,7 +112,7 @@ bool Rop::execute(sim::Activity& waiting) {
         return true;
     }
     for (const Use use : {Use::depth, Use::colour, Use::kbuffer}) {
-        const std::uint16_t entry = queued.entry[static_cast<std::size_t>(use)];
+        const std::uint32_t entry = queued.entry[static_cast<std::size_t>(use)];
         if (entry != no_entry && cache(use).pending(entry)) return false;
     }
     if (requests_.full() || invalidations_.size() + 8 > invalidations_.capacity()) return false;
@@ -145,7 +145,7 @@ bool Rop::execute(sim::Activity& waiting) {
     }
     unit_free_ = cycle() + cycles;
     for (const Use use : {Use::depth, Use::colour, Use::kbuffer})
-        if (const std::uint16_t entry = queued.entry[static_cast<std::size_t>(use)]; entry != no_entry)
+        if (const std::uint32_t entry = queued.entry[static_cast<std::size_t>(use)]; entry != no_entry)
             cache(use).unpin(entry);
     const auto fragments = static_cast<std::uint64_t>(std::popcount(queued.task.mask));
     ++stats_.quads;

@@ -59,7 +59,7 @@ struct RopShape {
     std::size_t draws = 0;           ///< draws of the frame, for the counters per draw
     bool depth = true;               ///< has a depth tile cache
     bool colour = true;              ///< has a colour tile cache
-    std::uint32_t kbuffer_tiles = 0; ///< tiles of its k-buffer tile cache, 0 to 65534
+    std::uint32_t kbuffer_tiles = 0; ///< tiles of its k-buffer tile cache, 0 to 2^26 - 1
 };
 
 class Rop final : public sim::Component {
@@ -89,7 +89,7 @@ class Rop final : public sim::Component {
     void stream(std::uint64_t read_bytes, std::uint64_t write_bytes);
 
   private:
-    static constexpr std::uint16_t no_entry = TileCache::none;
+    static constexpr std::uint32_t no_entry = TileCache::none;
     static constexpr std::uint32_t stream_chunk = 256;
     static constexpr std::uint64_t pool_address = std::uint64_t{1} << 42U; ///< of the lists' fragments
     static constexpr std::uint32_t largest_request = 4096;                 ///< bytes; see MemoryRequest
@@ -99,7 +99,7 @@ class Rop final : public sim::Component {
     enum class Use : std::uint8_t { depth, colour, kbuffer };
     struct Queued {
         QuadTask task;
-        std::array<std::uint16_t, 3> entry{no_entry, no_entry, no_entry}; ///< by Use
+        std::array<std::uint32_t, 3> entry{no_entry, no_entry, no_entry}; ///< by Use
     };
     struct ReadJob {
         KBufferRead read;
@@ -120,7 +120,7 @@ class Rop final : public sim::Component {
     bool accept_reads();
     bool serve_tile_reads();
     bool admit();
-    std::uint16_t secure_tile(Use use, std::uint32_t tile);
+    std::uint32_t secure_tile(Use use, std::uint32_t tile);
     bool execute(sim::Activity& waiting);
     bool stream_next();
     bool send_requests();
@@ -135,7 +135,7 @@ class Rop final : public sim::Component {
     void request(std::uint64_t address, std::uint32_t bytes, std::uint32_t tag, MemoryClient client, bool write,
                  std::uint32_t draw);
     void request_tile(Use use, std::uint32_t tile, std::uint32_t tag, MemoryClient client, bool write);
-    void clean(Use use, std::uint16_t entry);
+    void clean(Use use, std::uint32_t entry);
     void publish(std::uint32_t tile);
     void sample(const KBufferRead& read, std::uint64_t targets);
     std::uint32_t run_depth_colour(const Queued& queued);

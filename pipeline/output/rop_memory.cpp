@@ -10,7 +10,7 @@ namespace pipeline {
 namespace {
 
 // Memory tags: the upper bits say what an answer is for.
-constexpr std::uint32_t tag_tile = 1U << 28U; ///< | use << 16 | entry
+constexpr std::uint32_t tag_tile = 1U << 28U; ///< | use << 26 | entry
 constexpr std::uint32_t tag_read = 2U << 28U; ///< | job << 7 | target (64 = all targets)
 constexpr std::uint32_t tag_stream = 3U << 28U;
 constexpr std::uint32_t tag_part = 4U << 28U; ///< all but the last request of a tile that takes several
@@ -69,7 +69,7 @@ void Rop::request_tile(Use use, std::uint32_t tile, std::uint32_t tag, MemoryCli
     request(address, left, tag, client, write, draw_);
 }
 
-void Rop::clean(Use use, std::uint16_t entry) {
+void Rop::clean(Use use, std::uint32_t entry) {
     TileCache& tiles = cache(use);
     const std::uint32_t tile = tiles.tile(entry);
     request_tile(use, tile, 0, MemoryClient::tile_write, true);
@@ -84,7 +84,7 @@ bool Rop::take_memory() {
         const std::uint32_t tag = memory_in.receive().tag;
         progress = true;
         if ((tag & tag_kind) == tag_tile)
-            cache(static_cast<Use>(tag >> 16U & 3U)).filled(static_cast<std::uint16_t>(tag & 0xFFFFU));
+            cache(static_cast<Use>(tag >> 26U & 3U)).filled(tag & 0x3FF'FFFFU);
         else if ((tag & tag_kind) == tag_stream)
             --stream_outstanding_;
         else if ((tag & tag_kind) == tag_read) {
@@ -176,9 +176,9 @@ bool Rop::serve_tile_reads() {
 }
 
 // The entry that holds the tile, replacing another tile and asking for this one if need be; pinned for one more quad.
-std::uint16_t Rop::secure_tile(Use use, std::uint32_t tile) {
+std::uint32_t Rop::secure_tile(Use use, std::uint32_t tile) {
     TileCache& tiles = cache(use);
-    std::uint16_t entry = tiles.find(tile);
+    std::uint32_t entry = tiles.find(tile);
     ++tiles.stats.accesses;
     if (entry != no_entry) {
         ++tiles.stats.hits;
@@ -188,7 +188,7 @@ std::uint16_t Rop::secure_tile(Use use, std::uint32_t tile) {
         if (tiles.dirty(entry)) clean(use, entry);
         tiles.allocate(entry, tile, fetches(use));
         if (fetches(use))
-            request_tile(use, tile, tag_tile | static_cast<std::uint32_t>(use) << 16U | entry, MemoryClient::tile_read,
+            request_tile(use, tile, tag_tile | static_cast<std::uint32_t>(use) << 26U | entry, MemoryClient::tile_read,
                          false);
     }
     tiles.pin(entry);
@@ -209,7 +209,7 @@ bool Rop::write_back_next() {
     const std::uint32_t tiles = std::max<std::uint32_t>(params_.cache_tiles, kbuffer_tiles_.size());
     while (write_back_at_ < 3 * tiles) {
         const auto use = static_cast<Use>(write_back_at_ / tiles);
-        const auto entry = static_cast<std::uint16_t>(write_back_at_ % tiles);
+        const std::uint32_t entry = write_back_at_ % tiles;
         ++write_back_at_;
         if (entry >= cache(use).size() || !cache(use).dirty(entry)) continue;
         clean(use, entry);

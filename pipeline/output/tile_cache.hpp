@@ -28,29 +28,29 @@ static_assert(sim::fully_described<TileCacheStats>);
 
 class TileCache {
   public:
-    static constexpr std::uint16_t none = 0xFFFF;
+    static constexpr std::uint32_t none = ~std::uint32_t{0};
 
-    /// @param tiles tiles the cache holds, 0 (left out) to 65534
+    /// @param tiles tiles the cache holds, 0 (left out) to 2^26 - 1
     /// @param surface_tiles tiles of the whole surface
     TileCache(std::uint32_t tiles, std::uint32_t surface_tiles) : entries_(tiles), where_(surface_tiles, none) {}
 
-    std::uint16_t find(std::uint32_t tile) const { return where_[tile]; }
+    std::uint32_t find(std::uint32_t tile) const { return where_[tile]; }
     bool resident(std::uint32_t tile) const { return where_[tile] != none && !entries_[where_[tile]].pending; }
 
     /// The entry that allocate() would replace; none when all are pinned or pending.
-    std::uint16_t victim() const;
-    bool dirty(std::uint16_t entry) const { return entries_[entry].dirty; }
-    std::uint32_t tile(std::uint16_t entry) const { return entries_[entry].tile; }
-    bool pending(std::uint16_t entry) const { return entries_[entry].pending; }
-    std::uint16_t size() const { return static_cast<std::uint16_t>(entries_.size()); }
+    std::uint32_t victim() const;
+    bool dirty(std::uint32_t entry) const { return entries_[entry].dirty; }
+    std::uint32_t tile(std::uint32_t entry) const { return entries_[entry].tile; }
+    bool pending(std::uint32_t entry) const { return entries_[entry].pending; }
+    std::uint32_t size() const { return static_cast<std::uint32_t>(entries_.size()); }
 
     /// Puts `tile` into `entry`, whose old content must be clean or written back by the caller.
-    void allocate(std::uint16_t entry, std::uint32_t tile, bool pending);
-    void filled(std::uint16_t entry) { entries_[entry].pending = false; }
-    void pin(std::uint16_t entry);
-    void unpin(std::uint16_t entry) { --entries_[entry].users; }
-    void mark_dirty(std::uint16_t entry) { entries_[entry].dirty = true; }
-    void mark_clean(std::uint16_t entry) { entries_[entry].dirty = false; }
+    void allocate(std::uint32_t entry, std::uint32_t tile, bool pending);
+    void filled(std::uint32_t entry) { entries_[entry].pending = false; }
+    void pin(std::uint32_t entry);
+    void unpin(std::uint32_t entry) { --entries_[entry].users; }
+    void mark_dirty(std::uint32_t entry) { entries_[entry].dirty = true; }
+    void mark_clean(std::uint32_t entry) { entries_[entry].dirty = false; }
     /// Forgets all tiles; none may be pinned, pending or dirty.
     void forget();
 
@@ -66,8 +66,9 @@ class TileCache {
         bool pending = false;
     };
     std::vector<Entry> entries_;
-    std::vector<std::uint16_t> where_; ///< by tile
+    std::vector<std::uint32_t> where_; ///< by tile
     std::uint64_t clock_ = 0;
+    std::uint32_t fresh_ = 0; ///< entries from here on hold nothing yet
 };
 
 } // namespace pipeline

@@ -205,8 +205,8 @@ nlohmann::ordered_json without_time(const nlohmann::ordered_json& counters) {
     nlohmann::ordered_json kept = nlohmann::ordered_json::object();
     for (const auto& item : counters.items()) {
         const auto about = [&item](const char* word) { return item.key().find(word) != std::string::npos; };
-        if (about("max") || about("queued") || about("in_flight") || about("waits") || about("waiting") ||
-            about("residence") || about("interval") || about("stalls") || about("row_") || about("conflicts"))
+        if (about("max") || about("queued") || about("in_flight") || about("wait") || about("residence") ||
+            about("interval") || about("stalls") || about("row_") || about("conflicts"))
             continue;
         kept[item.key()] = item.value().is_object() ? without_time(item.value()) : item.value();
     }

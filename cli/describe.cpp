@@ -39,6 +39,7 @@ std::string overview_text(reports::TerminalStyle style) {
 
 std::string details_text(const CatalogueEntry& entry, reports::TerminalStyle style) {
     std::string text = reports::wrap(fmt::format("{}: {}", entry.name, entry.summary), style.columns, 2);
+    if (!entry.note.empty()) text += reports::wrap("  " + entry.note, style.columns, 2);
     const auto& rows = entry.details;
     std::size_t width = 0;
     for (const auto& row : rows) width = std::max(width, row.path.size());

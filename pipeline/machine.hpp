@@ -56,8 +56,8 @@ class Machine {
     void draw(const Pass& pass, const FragmentStream& stream);
     void draw_layers(const Pass& pass, const FragmentStream& stream);
     void clear_layers();
-    void keep_layers(std::size_t pixel, const std::vector<PeeledLayer>& near_layers,
-                     const std::vector<PeeledLayer>& far_layers, const FragmentStream& stream);
+    void keep_both_ends(std::size_t pixel, const std::vector<PeeledLayer>& near_layers,
+                        const std::vector<PeeledLayer>& far_layers, const FragmentStream& stream);
     void keep_entry(std::size_t pixel, std::uint32_t entry, QuadId id, const FragmentStream& stream);
     void draw_lists(const Pass& pass, const FragmentStream& stream);
     std::uint64_t run_lists(const FragmentStream& stream);

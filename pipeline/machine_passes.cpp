@@ -54,13 +54,20 @@ void Machine::draw_layers(const Pass& pass, const FragmentStream& stream) {
             context.before = both_ends ? &far_layers.back() : nullptr;
         }
         run_draw(stream);
-        near_layers.push_back({units_->fixed.depth, units_->fixed.winner});
-        if (both_ends) far_layers.push_back({units_->fixed.far_depth, units_->fixed.far_winner});
+        if (both_ends) {
+            near_layers.push_back({units_->fixed.depth, units_->fixed.winner});
+            far_layers.push_back({units_->fixed.far_depth, units_->fixed.far_winner});
+        } else {
+            for (std::size_t pixel = 0; pixel < pixels; ++pixel)
+                keep_entry(pixel, i, units_->fixed.winner[pixel], stream);
+            near_layers = {{units_->fixed.depth, units_->fixed.winner}};
+        }
         const bool read_again = i + 1 < passes && plan_.passes.capture != PassCapture::range;
         if (read_again) stream_surface(pixels * context.depth_bytes, pixels * context.depth_bytes);
         end();
     }
-    for (std::size_t pixel = 0; pixel < pixels; ++pixel) keep_layers(pixel, near_layers, far_layers, stream);
+    for (std::size_t pixel = 0; both_ends && pixel < pixels; ++pixel)
+        keep_both_ends(pixel, near_layers, far_layers, stream);
     context.behind = context.before = nullptr;
     context.range.reset();
     context.farthest = false;
@@ -74,24 +81,24 @@ void Machine::clear_layers() {
     for (std::size_t at = 0; at < layers_.size(); at += floats) program.clear(layers_.data() + at);
 }
 
-// The captured fragments of a pixel become its entries: those from the front, then those from behind, the nearest of
-// them first. A fragment captured from both ends counts once.
-void Machine::keep_layers(std::size_t pixel, const std::vector<PeeledLayer>& near_layers,
-                          const std::vector<PeeledLayer>& far_layers, const FragmentStream& stream) {
-    const bool ranges = plan_.passes.capture == PassCapture::range;
+// Fragments captured from both ends become a pixel's entries: those from the front, then those from behind, the nearest
+// of them first. One that was captured from both ends counts once.
+void Machine::keep_both_ends(std::size_t pixel, const std::vector<PeeledLayer>& near_layers,
+                             const std::vector<PeeledLayer>& far_layers, const FragmentStream& stream) {
     std::vector<QuadId> order;
-    for (const PeeledLayer& layer : near_layers)
-        if (layer.order[pixel] != ~QuadId{0} || ranges) order.push_back(layer.order[pixel]);
-    for (auto layer = far_layers.rbegin(); layer != far_layers.rend(); ++layer)
-        if (layer->order[pixel] != ~QuadId{0} &&
-            std::find(order.begin(), order.end(), layer->order[pixel]) == order.end())
-            order.push_back(layer->order[pixel]);
+    const auto add = [&](QuadId quad) {
+        if (quad != ~QuadId{0} && std::find(order.begin(), order.end(), quad) == order.end()) order.push_back(quad);
+    };
+    for (const PeeledLayer& layer : near_layers) add(layer.order[pixel]);
+    for (auto layer = far_layers.rbegin(); layer != far_layers.rend(); ++layer) add(layer->order[pixel]);
     const std::size_t kept = std::min<std::size_t>(order.size(), frame_->program->k());
     for (std::size_t entry = 0; entry < kept; ++entry)
-        if (order[entry] != ~QuadId{0}) keep_entry(pixel, static_cast<std::uint32_t>(entry), order[entry], stream);
+        keep_entry(pixel, static_cast<std::uint32_t>(entry), order[entry], stream);
 }
 
+// Without a fragment the entry stays empty.
 void Machine::keep_entry(std::size_t pixel, std::uint32_t entry, QuadId id, const FragmentStream& stream) {
+    if (id == ~QuadId{0}) return;
     const ModifyProgram& program = *frame_->program;
     const Quad& quad = stream.quads[id];
     const std::size_t x = pixel % frame_->view.width, y = pixel / frame_->view.width;

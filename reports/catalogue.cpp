@@ -1,6 +1,7 @@
 #include "reports/catalogue.hpp"
 
 #include "models/gpu_library.hpp"
+#include "models/kbuffers/design_support.hpp"
 #include "models/kbuffers/library.hpp"
 #include "models/programs/library.hpp"
 #include "pipeline/gpu_params.hpp"
@@ -56,10 +57,20 @@ std::vector<CatalogueEntry> gpus() {
     return entries;
 }
 
+std::string support_text(const models::DesignInfo& info) {
+    sim::Config defaults;
+    const nlohmann::ordered_json support = models::support_of(*info.make(defaults));
+    return fmt::format("runs {}; antialiasing {}{}",
+                       fmt::join(support.at("programs").get<std::vector<std::string>>(), ", "),
+                       support.at("antialiasing").get<std::string>(),
+                       support.at("early_reject").get<bool>() ? "; rejects fragments early" : "");
+}
+
 std::vector<CatalogueEntry> designs() {
     std::vector<CatalogueEntry> entries;
     for (const models::DesignInfo& design : models::designs())
-        entries.push_back({"designs", std::string(design.id), std::string(design.summary), design.parameters()});
+        entries.push_back({"designs", std::string(design.id), std::string(design.summary), design.parameters(),
+                           support_text(design)});
     return entries;
 }
 

@@ -16,6 +16,7 @@ struct CatalogueEntry {
     std::string name;                    ///< "scoreboard", "rop.queue"
     std::string summary;                 ///< one line
     std::vector<sim::FieldInfo> details; ///< its parameters or counters
+    std::string note = {};               ///< more, for when it is described alone
 };
 
 struct CatalogueTopic {

@@ -1,6 +1,7 @@
 #include "reports/comparison.hpp"
 
 #include "models/gpu_library.hpp"
+#include "models/kbuffers/design_support.hpp"
 #include "pipeline/functional/composite.hpp"
 #include "pipeline/functional/frame_streams.hpp"
 #include "pipeline/functional/parallel.hpp"
@@ -205,7 +206,10 @@ Comparison compare(ComparisonInput input, const Supervision& supervision) {
     enter(supervision, Progress::Phase::simulating);
     Comparison comparison;
     if (supervision.progress != nullptr) supervision.progress->quads_total = all_quads(input);
-    for (const auto& design : input.designs) comparison.design_parameters.push_back(design->parameters());
+    for (const auto& design : input.designs) {
+        comparison.design_parameters.push_back(design->parameters());
+        comparison.design_support.push_back(models::support_of(*design));
+    }
     comparison.runs.resize(input.designs.size());
     comparison.pixels.resize(input.designs.size());
     pipeline::parallel_for(input.threads, input.designs.size(), [&](std::size_t i) {

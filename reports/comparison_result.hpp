@@ -56,6 +56,7 @@ struct Comparison {
     std::vector<std::uint32_t> depth_complexity;           ///< fragments drawn onto each pixel in one geometry pass
     std::vector<pipeline::RunResult> runs;                 ///< in the order in which the designs were asked for
     std::vector<nlohmann::ordered_json> design_parameters; ///< of each run
+    std::vector<nlohmann::ordered_json> design_support;    ///< what it can be used for, of each run
     std::vector<FramePixels> pixels;                       ///< of each run
     HostCost host;
 

@@ -141,7 +141,8 @@ struct Needs {
     std::vector<std::pair<std::string, std::string>> left_out;
 };
 
-ordered_json design_json(const pipeline::RunResult& run, const ordered_json& parameters, const Needs& common) {
+ordered_json design_json(const pipeline::RunResult& run, const ordered_json& parameters, const ordered_json& support,
+                         const Needs& common) {
     ordered_json json = {{"id", run.design},
                          {"parameters", object_or_empty(parameters)},
                          {"cycles", run.cycles},
@@ -163,6 +164,7 @@ ordered_json design_json(const pipeline::RunResult& run, const ordered_json& par
                          {"caches", object_or_empty(run.caches)},
                          {"bytes", object_or_empty(run.bytes)},
                          {"area", object_or_empty(run.area)},
+                         {"supports", object_or_empty(support)},
                          {"passes", passes_json(run)},
                          {"draws", draws_json(run)}};
     // The comparison's "needs" states what all designs have in common.
@@ -192,7 +194,8 @@ ordered_json result_json(const Comparison& comparison) {
                        common_to_all(comparison.runs, &pipeline::RunResult::left_out)};
     json["needs"] = needs_json(common.built, common.left_out);
     for (std::size_t i = 0; i < comparison.runs.size(); ++i)
-        json["designs"].push_back(design_json(comparison.runs[i], comparison.design_parameters.at(i), common));
+        json["designs"].push_back(design_json(comparison.runs[i], comparison.design_parameters.at(i),
+                                              comparison.design_support.at(i), common));
     return json;
 }
 

@@ -25,6 +25,7 @@ std::string numbers_of(const std::string& scene) {
     request.scene = scene;
     request.width = request.height = 64;
     for (const models::DesignInfo& design : models::designs()) request.designs.emplace_back(design.id);
+    request.only_able_designs = true;
     std::string text;
     for (const pipeline::RunResult& run : reports::compare(reports::prepare(request)).runs)
         text += sim::csv_line(row_of(scene, run));

@@ -134,6 +134,8 @@ reports::Comparison make(bool colours) {
     racy.kbuffer = comparison.pixels[0].kbuffer;
     safe.kbuffer = comparison.pixels[1].kbuffer;
     comparison.runs = {std::move(racy), std::move(safe)};
+    comparison.design_support.assign(
+        2, {{"programs", {"nearest-k rgbz"}}, {"antialiasing", "supersampling"}, {"early_reject", false}});
     comparison.design_parameters = {{{"bypass_l1", false}}, {{"entries", 64}}};
     comparison.host = {1.5, 0.25, 100'000'000, 2};
     return comparison;

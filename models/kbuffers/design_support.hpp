@@ -1,0 +1,16 @@
+// What a design can be used for: which programs, which antialiasing, whether fragments can be rejected early.
+#pragma once
+
+#include "pipeline/output/kbuffer_design.hpp"
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace models {
+
+/// { "programs": names with the kinds of entry, "antialiasing": "per sample" or "supersampling", "early_reject":
+/// whether fragments that no entry can take are dropped before shading }. A shader works on pixels, so designs that
+/// update in it need supersampling; units of the ROP work on samples as well (specification 004, sections 4.3.1
+/// and 6.1).
+nlohmann::ordered_json support_of(const pipeline::KBufferDesign& design);
+
+} // namespace models

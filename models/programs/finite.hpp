@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace models {
@@ -9,7 +10,7 @@ namespace models {
 /// An infinity becomes the largest float of its sign, what is not a number 0.
 inline float finite(float value) {
     constexpr float largest = std::numeric_limits<float>::max();
-    if (value >= -largest && value <= largest) return value;
+    if (std::abs(value) <= largest) return value;
     return value > 0.0F ? largest : value < 0.0F ? -largest : 0.0F;
 }
 

@@ -100,7 +100,7 @@ TEST_F(LedgerTest, ThePairNamesVictimAggressorAndStaleness) {
 TEST(TileCacheTest, ReplacesTheLeastRecentlyUsedThatIsNeitherPinnedNorPending) {
     TileCache cache(3, 16);
     for (const std::uint32_t tile : {4U, 5U, 6U}) {
-        const std::uint16_t entry = cache.victim();
+        const std::uint32_t entry = cache.victim();
         cache.allocate(entry, tile, tile == 6);
         cache.pin(entry);
         if (tile != 4) cache.unpin(entry);
@@ -111,7 +111,7 @@ TEST(TileCacheTest, ReplacesTheLeastRecentlyUsedThatIsNeitherPinnedNorPending) {
     EXPECT_EQ(cache.tile(cache.victim()), 4U);
     cache.filled(cache.find(6));
     EXPECT_TRUE(cache.resident(6));
-    const std::uint16_t entry = cache.victim();
+    const std::uint32_t entry = cache.victim();
     cache.allocate(entry, 9, false);
     EXPECT_EQ(cache.find(4), TileCache::none);
     cache.mark_dirty(entry);

@@ -137,7 +137,7 @@ TEST(LanguageErrors, UnrollingHasAnEnd) {
     EXPECT_NE(body_error(variables).find("at most 256 variables"), std::string::npos);
     std::string constants;
     for (int i = 0; i < 5000; ++i) constants += fmt::format("s.x = {}.5;", i);
-    EXPECT_NE(body_error(constants).find("at most 4096 constants"), std::string::npos);
+    EXPECT_NE(body_error(constants).find("at most 512 constants"), std::string::npos);
 }
 
 TEST(LanguageErrors, GarbageGivesOneClearLine) {

@@ -6,8 +6,6 @@ namespace models::language {
 
 namespace {
 
-bool jumps(Opcode code) { return code >= Opcode::jump; }
-
 std::uint32_t operations(const Instruction& instruction) {
     switch (instruction.code) {
     case Opcode::end:
@@ -19,6 +17,9 @@ std::uint32_t operations(const Instruction& instruction) {
         return instruction.count;
     case Opcode::swap:
         return 2U * instruction.count;
+    case Opcode::swap_if_less:
+    case Opcode::swap_if_less_or_equal:
+        return 1U + 2U * instruction.count;
     case Opcode::multiply_add:
         return 2;
     default:
@@ -27,6 +28,8 @@ std::uint32_t operations(const Instruction& instruction) {
 }
 
 } // namespace
+
+bool jumps(Opcode code) { return code >= Opcode::jump && code <= Opcode::unless_not_equal; }
 
 std::uint32_t longest_path(const Code& code) {
     std::vector<std::uint32_t> from(code.instructions.size() + 1, 0);

@@ -6,17 +6,19 @@
 
 namespace models::language {
 
-/// Bank and place of a float: where a program's values lie while it runs.
+/// Place of a float. While code is generated, it is a bank and a place in it, each bank at a multiple of bank_size;
+/// finished code counts the pixel's floats from 0 and those of the run from own_floats: its variables, then the
+/// constants.
 using Operand = std::uint16_t;
 
 enum class Bank : std::uint8_t { pixel, locals, constants };
 
-inline constexpr std::uint32_t bank_shift = 12;
-inline constexpr std::uint32_t bank_size = 1U << bank_shift;
-inline constexpr std::uint32_t most_locals = 256;
+inline constexpr std::uint32_t bank_size = 1024;
+inline constexpr std::uint32_t most_locals = 256, most_constants = 512;
+inline constexpr std::uint32_t own_floats = 1U << 15;
 
 constexpr Operand operand(Bank bank, std::uint32_t place) {
-    return static_cast<Operand>(static_cast<std::uint32_t>(bank) << bank_shift | place);
+    return static_cast<Operand>(static_cast<std::uint32_t>(bank) * bank_size + place);
 }
 
 enum class Opcode : std::uint8_t {
@@ -48,7 +50,12 @@ enum class Opcode : std::uint8_t {
     unless_less_or_equal,
     unless_equal,
     unless_not_equal,
+    swap_if_less, ///< a and d, `count` floats, if b < c: the step of every sort
+    swap_if_less_or_equal,
 };
+
+/// Whether `d` is where to go on.
+bool jumps(Opcode code);
 
 struct Instruction {
     Opcode code = Opcode::end;
@@ -57,9 +64,9 @@ struct Instruction {
 };
 
 struct Code {
-    std::vector<Instruction> instructions; ///< the last one is the end
-    std::vector<float> constants;
-    std::uint32_t locals = 0;                        ///< how many it uses
+    std::vector<Instruction> instructions;           ///< the last one is the end
+    std::uint32_t locals = 0;                        ///< floats of a run; inputs first
+    std::vector<float> constants;                    ///< behind them
     std::uint32_t entries = 0, floats_per_entry = 0; ///< for loads and stores
 };
 

@@ -27,6 +27,17 @@ std::size_t Emitter::emit_jump(Instruction instruction) {
 
 void Emitter::aim(std::size_t jump) { code_.instructions[jump].d = static_cast<Operand>(code_.instructions.size()); }
 
+bool Emitter::join_swap(std::size_t jump) {
+    if (code_.instructions.size() != jump + 2) return false;
+    const Instruction swap = code_.instructions[jump + 1];
+    Instruction& test = code_.instructions[jump];
+    const bool strict = test.code == Opcode::unless_less;
+    if (swap.code != Opcode::swap || (!strict && test.code != Opcode::unless_less_or_equal)) return false;
+    test = {strict ? Opcode::swap_if_less : Opcode::swap_if_less_or_equal, swap.count, swap.a, test.b, test.c, swap.b};
+    code_.instructions.pop_back();
+    return true;
+}
+
 Operand Emitter::temporary() {
     if (next_temporary_ >= most_locals)
         complain(source_, place_, fmt::format("at most {} variables and intermediate results", most_locals), "more");
@@ -43,15 +54,36 @@ Operand Emitter::pooled(float number) {
     const auto found = std::find_if(code_.constants.begin(), code_.constants.end(), same);
     const auto place = static_cast<std::uint32_t>(found - code_.constants.begin());
     if (found == code_.constants.end()) {
-        if (place == bank_size) complain(source_, place_, fmt::format("at most {} constants", bank_size), "more");
+        if (place == most_constants)
+            complain(source_, place_, fmt::format("at most {} constants", most_constants), "more");
         code_.constants.push_back(number);
     }
     return operand(Bank::constants, place);
 }
 
+Operand Emitter::placed(Operand operand) const {
+    const std::uint32_t place = operand % bank_size;
+    switch (static_cast<Bank>(operand / bank_size)) {
+    case Bank::pixel:
+        break;
+    case Bank::locals:
+        return static_cast<Operand>(own_floats + place);
+    case Bank::constants:
+        return static_cast<Operand>(own_floats + code_.locals + place);
+    }
+    return operand;
+}
+
 Code Emitter::take() {
     emit({});
     code_.locals = std::max(code_.locals, first_temporary_);
+    for (Instruction& one : code_.instructions) {
+        const bool names_field = one.code == Opcode::load || one.code == Opcode::store;
+        one.a = placed(one.a);
+        one.b = placed(one.b);
+        if (!names_field) one.c = placed(one.c);
+        if (!jumps(one.code)) one.d = placed(one.d);
+    }
     return std::move(code_);
 }
 

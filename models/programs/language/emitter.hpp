@@ -30,6 +30,10 @@ class Emitter {
     /// Aims it at what comes next.
     void aim(std::size_t jump);
 
+    /// Joins a jump over the swap behind it, if these are the last two instructions, to one conditional swap. Returns
+    /// whether it did.
+    bool join_swap(std::size_t jump);
+
     Operand temporary();
     /// Where a value can be read.
     Operand read(const Value& value);
@@ -37,6 +41,7 @@ class Emitter {
     Code take();
 
   private:
+    Operand placed(Operand operand) const;
     Operand pooled(float number);
 
     const Source& source_;

@@ -107,7 +107,10 @@ class Generator {
         if (condition.constant) return block(constant(condition) != 0.0F ? one.body : one.otherwise);
         const std::size_t skip = jump_unless(condition);
         block(one.body);
-        if (one.otherwise.empty()) return emitter_.aim(skip);
+        if (one.otherwise.empty()) {
+            if (!emitter_.join_swap(skip)) emitter_.aim(skip);
+            return;
+        }
         const std::size_t end = emitter_.emit_jump({Opcode::jump});
         emitter_.aim(skip);
         block(one.otherwise);

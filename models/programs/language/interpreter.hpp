@@ -3,9 +3,22 @@
 
 #include "models/programs/language/code.hpp"
 
+#include <array>
+
 namespace models::language {
 
-/// `locals` has code.locals floats, all set. Returns whether a float of the pixel changed at any time.
-bool run(const Code& code, float* pixel, float* locals);
+/// One run of code over a pixel, with variables of its own.
+class Run {
+  public:
+    explicit Run(const Code& code);
+
+    float& input(std::uint32_t i) { return own_[i]; }
+    /// Returns whether a float of the pixel changed at any time.
+    bool execute(float* pixel);
+
+  private:
+    const Code& code_;
+    std::array<float, most_locals + most_constants> own_;
+};
 
 } // namespace models::language

@@ -21,20 +21,8 @@ namespace models {
 namespace {
 
 namespace fs = std::filesystem;
-using language::most_locals;
 
 constexpr std::uintmax_t longest_text = 1U << 20; ///< bytes
-
-/// The registers of one run.
-class Locals {
-  public:
-    explicit Locals(const language::Code& code) { std::fill_n(floats_.begin(), code.locals, 0.0F); }
-    float& operator[](std::uint32_t i) { return floats_[i]; }
-    float* data() { return floats_.data(); }
-
-  private:
-    std::array<float, most_locals> floats_;
-};
 
 class UserProgram final : public pipeline::ModifyProgram {
   public:
@@ -56,25 +44,22 @@ class UserProgram final : public pipeline::ModifyProgram {
     void clear(float* pixel) const override { std::copy(compiled_.clear.begin(), compiled_.clear.end(), pixel); }
 
     bool insert(float* pixel, const float* fragment) const override {
-        Locals locals(compiled_.insert);
-        for (std::uint32_t i = 0; i < floats_per_entry(); ++i) locals[i] = finite(fragment[i]);
-        return language::run(compiled_.insert, pixel, locals.data());
+        language::Run run(compiled_.insert);
+        for (std::uint32_t i = 0; i < floats_per_entry(); ++i) run.input(i) = finite(fragment[i]);
+        return run.execute(pixel);
     }
 
     void make_entry(const pipeline::Fragment& fragment, float* entry) const override {
-        Locals locals(compiled_.make_entry);
-        for (std::uint32_t i = 0; i < 4; ++i) locals[i] = fragment.rgba == nullptr ? 0.0F : finite(fragment.rgba[i]);
-        locals[4] = finite(fragment.depth);
-        locals[5] = static_cast<float>(fragment.draw);
+        language::Run run(compiled_.make_entry);
+        for (std::uint32_t i = 0; i < 4; ++i) run.input(i) = fragment.rgba == nullptr ? 0.0F : finite(fragment.rgba[i]);
+        run.input(4) = finite(fragment.depth);
+        run.input(5) = static_cast<float>(fragment.draw);
         std::fill_n(entry, floats_per_entry(), 0.0F);
-        language::run(compiled_.make_entry, entry, locals.data());
+        run.execute(entry);
     }
 
     bool drains() const override { return program_.has_drain; }
-    void drain(float* pixel) const override {
-        Locals locals(compiled_.drain);
-        language::run(compiled_.drain, pixel, locals.data());
-    }
+    void drain(float* pixel) const override { language::Run(compiled_.drain).execute(pixel); }
 
     pipeline::Peeling peeling() const override { return program_.peeling; }
 

@@ -1,7 +1,7 @@
 // Constructive solid geometry: per pixel, the first point inside a Boolean expression of the drawn objects.
 //
-// Source: Bavoil 2007, section 6.1.3 (specification 004, A13). Each draw is an object with a closed surface. A pixel with
-// more than k fragments loses those behind, exits among them; reports count such pixels.
+// Source: Bavoil 2007, section 6.1.3 (specification 004, A13). Each draw is an object with a closed surface. A pixel
+// with more than k fragments loses those behind, exits among them; reports count such pixels.
 #include "models/programs/nearest_k.hpp"
 #include "traces/workloads/csg_surface.hpp"
 #include "traces/workloads/methods.hpp"

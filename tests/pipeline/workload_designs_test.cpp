@@ -22,7 +22,7 @@ const std::vector<Case> cases{
     {"translucency", "gen:csg", {"fresnel=true"}},
     {"translucency", "gen:csg", {"media=one"}},
     {"csg", "gen:csg", {"expression=A - B"}},
-    {"depth-of-field", "gen:planes", {}, false},
+    {"depth-of-field", "gen:planes", {}},
     {"isosurface", "gen:tetrahedra?n=4", {}, false},
     {"volume", "gen:tetrahedra?n=4", {}, false, false},
     {"particles", "gen:particles?n=3000", {}, false},

@@ -12,6 +12,7 @@ namespace {
 std::atomic<bool> stop{false};
 std::atomic<int> signal_number{0};
 std::atomic<int> files_in_progress{0};
+std::atomic<bool> told{false};
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
 
 constexpr suseconds_t patience_us = 700'000;
@@ -19,8 +20,7 @@ constexpr suseconds_t retry_us = 100'000;
 
 void on_patience_over(int) {
     if (files_in_progress != 0) return; // tried again after retry_us
-    constexpr char text[] = "ropsim: interrupted\n";
-    [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, text, sizeof(text) - 1);
+    tell_interrupted();
     ::_exit(interrupted_status());
 }
 
@@ -52,6 +52,13 @@ const std::atomic<bool>& stop_requested() { return stop; }
 FilesInProgress::FilesInProgress() { ++files_in_progress; }
 
 FilesInProgress::~FilesInProgress() { --files_in_progress; }
+
+// Called by the handler, too: the clock may run out while the program is just ending by itself.
+void tell_interrupted() {
+    if (told.exchange(true)) return;
+    constexpr char text[] = "ropsim: interrupted\n";
+    [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, text, sizeof(text) - 1);
+}
 
 int interrupted_status() { return 128 + (signal_number == 0 ? SIGINT : signal_number.load()); }
 

@@ -23,6 +23,9 @@ class FilesInProgress {
     FilesInProgress& operator=(const FilesInProgress&) = delete;
 };
 
+/// Says so on standard error, once.
+void tell_interrupted();
+
 /// Exit status of a program that was interrupted: 130 for SIGINT, 143 for SIGTERM.
 int interrupted_status();
 

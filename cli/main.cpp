@@ -40,8 +40,8 @@ int run_program(const std::vector<std::string>& arguments) {
     } catch (const sim::InputError& error) {
         cli::complain(error.what());
         return 1;
-    } catch (const sim::Interrupted& interrupted) {
-        cli::complain(interrupted.what());
+    } catch (const sim::Interrupted&) {
+        cli::tell_interrupted();
         return cli::interrupted_status();
     } catch (const std::bad_alloc&) {
         cli::complain("out of memory: a smaller --size or --k, fewer --designs or fewer --threads need less");

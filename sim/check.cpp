@@ -1,8 +1,21 @@
 #include "sim/check.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 
 namespace sim {
+
+namespace {
+
+std::string one_line(std::string text) {
+    std::replace_if(
+        text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
+    return text;
+}
+
+} // namespace
+
+InputError::InputError(const std::string& message) : std::runtime_error(one_line(message)) {}
 
 CheckContext& check_context() {
     thread_local CheckContext context;

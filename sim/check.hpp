@@ -12,7 +12,8 @@ namespace sim {
 /// The input is bad. The message is one line: file or option, place in it, what was expected. Exit status 1.
 class InputError : public std::runtime_error {
   public:
-    using std::runtime_error::runtime_error;
+    /// Control characters, which a name in the input may hold, become spaces.
+    explicit InputError(const std::string& message);
 };
 
 /// An invariant of the simulator does not hold: our bug. Exit status 3.

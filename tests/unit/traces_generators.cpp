@@ -137,6 +137,7 @@ TEST(Generators, ErrorsNameWhatWasExpected) {
               "gen:gras: expected one of grass, blob, grid-soup, stack, quads, random-quads, discs; "
               "did you mean 'grass'?");
     EXPECT_EQ(error_of("gen:grass?bladez=5"), "gen:grass: unknown key 'bladez'; did you mean 'blades'?");
+    EXPECT_EQ(error_of("gen:grass?bla\ndes=5"), "gen:grass: unknown key 'bla des'; did you mean 'blades'?");
     EXPECT_EQ(error_of("gen:grass?blades=0"), "gen:grass: blades: expected integer 1 to 20000000, got 0");
     EXPECT_EQ(error_of("gen:grass?blades=many"), "gen:grass: blades: expected integer 1 to 20000000, got \"many\"");
     EXPECT_EQ(error_of("gen:grass?blades"), "gen:grass: expected KEY=VALUE, got 'blades'");

@@ -1,6 +1,7 @@
 #include "reports/counter_reference.hpp"
 
 #include "pipeline/fragment/fragment_scheduler.hpp"
+#include "pipeline/fragment/lock_table.hpp"
 #include "pipeline/gpu_params.hpp"
 
 #include <algorithm>
@@ -30,6 +31,7 @@ std::vector<StageReference> make_reference() {
             stage<EarlyDepthStats>("early_depth_test", "Early depth test"),
             stage<FragmentSchedulerStats>("fragment_scheduler", "Fragment scheduler"),
             stage<FragmentPipelineStats>("fragment_pipeline", "Fragment pipelines with their texture L1 caches"),
+            stage<LockTableStats>("lock_table", "Lock table of the shaders' critical sections"),
             stage<ReorderBufferStats>("reorder_buffer", "Reorder buffer"),
             stage<CrossbarStats>("crossbar", "Crossbar to the ROP partitions"),
             stage<RopStats>("rop", "ROP partitions with their tile caches"),

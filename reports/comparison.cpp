@@ -145,7 +145,7 @@ FramePixels pixels_of(const pipeline::Frame& frame, std::vector<float> kbuffer, 
 
 pipeline::RunResult run_design(const ComparisonInput& input, std::size_t number, const Supervision& supervision) {
     const pipeline::KBufferDesign& design = *input.designs[number];
-    const SubmittedFrame* submitted = input.submitted[number].get();
+    const SubmittedFrame* submitted = number < input.submitted.size() ? input.submitted[number].get() : nullptr;
     pipeline::MachineOptions options;
     options.seed = input.seed;
     options.stop = supervision.stop;

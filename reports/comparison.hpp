@@ -62,7 +62,8 @@ struct ComparisonInput {
     std::vector<pipeline::FragmentStream> streams; ///< one per draw pass
     pipeline::ReferenceImage reference;
     std::vector<std::unique_ptr<pipeline::KBufferDesign>> designs;
-    std::vector<std::shared_ptr<const SubmittedFrame>> submitted; ///< by design; null where it takes the frame as it is
+    /// By design; null, or not there, where it takes the frame as it is.
+    std::vector<std::shared_ptr<const SubmittedFrame>> submitted;
     std::uint64_t seed = 1;
     unsigned threads = 1; ///< at least 1
     double seconds = 0;   ///< host time that making all this took

@@ -56,11 +56,14 @@ TEST(ProgramLibrary, DesignsRefuseWhatTheyCannotRun) {
         return refused;
     };
     using Names = std::vector<std::string>;
-    EXPECT_EQ(refusals("nearest-k"), Names{});
-    EXPECT_EQ(refusals("z-buffer"), Names{});
-    EXPECT_EQ(refusals("volume"), (Names{"blender", "multipass"}));
-    for (const char* program : {"order-and-blend", "mlab", "isosurface", "depth-partition", "stencil"})
-        EXPECT_EQ(refusals(program), Names{"multipass"}) << program;
+    const Names peeling{"peel-rop", "multipass", "dual-peel", "atomic-min"};
+    EXPECT_EQ(refusals("nearest-k"), Names{"atomic-min"}); // which takes depths alone
+    EXPECT_EQ(refusals("z-buffer"), Names{"atomic-min"});
+    EXPECT_EQ(refusals("depth-partition"), (Names{"peel-rop", "dual-peel", "atomic-min"}));
+    EXPECT_EQ(refusals("volume"),
+              (Names{"blender", "peel-rop", "multipass", "dual-peel", "cam", "hashed", "tile-ticket", "atomic-min"}));
+    for (const char* program : {"order-and-blend", "mlab", "isosurface", "stencil"})
+        EXPECT_EQ(refusals(program), peeling) << program;
 }
 
 } // namespace

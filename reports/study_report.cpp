@@ -31,9 +31,9 @@ std::string number_text(double number) {
 Plot plot_of(const StudyResult& result, std::size_t measure) {
     const Study& study = result.study;
     Plot plot;
-    plot.title = study.title;
     plot.x_title = study.x;
     plot.y_title = title_of(study.measures[measure]);
+    plot.title = study.measures.size() == 1 ? study.title : plot.y_title;
     plot.logarithmic = study.logarithmic;
     for (const StudyPoint& point : study.points) plot.labels.push_back(point.at("x"));
     const std::size_t lines = study.series.size() * study.gpus.size();

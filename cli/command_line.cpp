@@ -49,6 +49,7 @@ constexpr const char* calibrate_help = R"(Examples:
 constexpr const char* study_help = R"(Examples:
   ropsim study                                   the studies there are
   ropsim study batching --out batching
+  ropsim study tolerable_artefacts --out artefacts
   ropsim study batching --gpus g70 --fidelity estimate
   ropsim study my_study.toml)";
 

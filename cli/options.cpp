@@ -2,6 +2,7 @@
 
 #include "models/kbuffers/library.hpp"
 #include "pipeline/geometry/host.hpp"
+#include "reports/frame_size.hpp"
 #include "sim/check.hpp"
 #include "sim/suggest.hpp"
 
@@ -23,17 +24,12 @@ std::optional<Number> parse(std::string_view text) {
 }
 
 void parse_size(const std::string& text, reports::ComparisonRequest& request) {
-    const std::size_t x = text.find('x');
-    const auto width = parse<std::uint32_t>(std::string_view(text).substr(0, x));
-    const auto height =
-        x == std::string::npos ? std::nullopt : parse<std::uint32_t>(std::string_view(text).substr(x + 1));
-    constexpr std::uint32_t largest = 16384;
-    const auto good = [](std::optional<std::uint32_t> side) { return side && *side >= 1 && *side <= largest; };
-    if (!good(width) || !good(height))
-        throw sim::InputError(
-            fmt::format("--size: expected WIDTHxHEIGHT with 1 to {} pixels each, got '{}'", largest, text));
-    request.width = *width;
-    request.height = *height;
+    const auto size = reports::frame_size(text);
+    if (!size)
+        throw sim::InputError(fmt::format("--size: expected WIDTHxHEIGHT with 1 to {} pixels each, got '{}'",
+                                          reports::largest_side, text));
+    request.width = size->width;
+    request.height = size->height;
 }
 
 unsigned parse_threads(const std::string& text) {

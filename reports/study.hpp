@@ -1,8 +1,7 @@
-// Studies of geometry feed: a data file asks one question, the model answers with a table and a plot.
+// Studies: a data file asks one question, the model answers with a table and plots.
 //
-// A file (reports/studies/NAME.toml) has `title`, `question`, `source`, `gpus`, `x` (title of the axis), `logarithmic`,
-// `measure` (what is plotted), `series` (each with a scene, preparations and so on, in which {name} stands for a
-// variable of the point) and `points` (each with `x` and the variables).
+// What a file (reports/studies/NAME.toml) can hold is in reports/studies/README.md. A series either feeds geometry or,
+// where it names a design, runs k-buffer designs on whole frames; all series of a study do the same.
 #pragma once
 
 #include "reports/csv.hpp"
@@ -16,32 +15,59 @@
 
 namespace reports {
 
+/// A point of a study: "x" and the other variables that its series name.
+using StudyPoint = std::map<std::string, std::string>;
+
+/// {name} in the texts stands for a variable of the point.
 struct StudySeries {
     std::string name;
     std::string scene;
+    std::vector<std::string> settings; ///< "section.key=value" of the GPU and of designs, "workload.key=value"
+
+    std::string design; ///< empty: geometry feed
+
+    // Geometry feed only.
     std::vector<std::string> prepare;
-    std::vector<std::string> settings; ///< of the GPU
     std::string submission = "buffers";
     bool reads_all = true;
 };
 
+/// A number that a study reads off its runs, and plots.
+struct StudyMeasure {
+    std::string value; ///< a measure of study_measures(); of designs: a value as in run_values.hpp, or "VALUE / VALUE"
+    std::string title; ///< of the axis
+    std::string over;  ///< a series whose number it is divided by; empty: none
+    bool optional = false; ///< runs may lack it, as they lack the unit that it counts
+};
+
 struct Study {
-    std::string name, title, question, source;
+    std::string name, title, question, answer, source;
     std::vector<std::string> gpus;
     std::string x;
     bool logarithmic = false;
-    std::string measure = "fps";
+    std::vector<StudyMeasure> measures; ///< at least one
     std::vector<StudySeries> series;
-    std::vector<std::map<std::string, std::string>> points; ///< "x" and what else the series name
+    std::vector<StudyPoint> points;
+
+    // Designs only.
+    std::string size = "256x256"; ///< may name variables
+    std::string workload = "transparency";
+    std::uint32_t seeds = 1; ///< runs of each design, with the seeds 1, 2, ...; {seed} names them
+
+    bool of_designs() const { return !series.empty() && !series.front().design.empty(); }
+};
+
+/// A number over the seeds.
+struct StudyNumber {
+    std::string value;                  ///< StudyMeasure::value
+    double mean = 0, low = 0, high = 0; ///< NaN where the run lacks it
 };
 
 struct StudyValue {
     std::string gpu, series, x;
-    double fps = 0, milliseconds = 0, vertices_per_second = 0, triangles_per_second = 0;
-    double acmr = 0, overfetch = 0, bytes = 0;
-    std::uint64_t draws = 0;
-    std::string limit;
-    double measure = 0; ///< the one that the study plots
+    std::vector<StudyNumber> numbers; ///< of geometry feed: all of study_measures(); of designs: those of the study
+    std::string limit;                ///< what limits geometry feed
+    double measure = 0;               ///< the first one that the study plots
 };
 
 struct StudyResult {
@@ -50,7 +76,7 @@ struct StudyResult {
     Fidelity fidelity = Fidelity::detailed;
 };
 
-/// What a study may measure.
+/// What a study of geometry feed may measure.
 const std::vector<std::string>& study_measures();
 double measure_of(const StudyValue& value, const std::string& measure);
 
@@ -62,10 +88,10 @@ std::vector<std::string> study_names();
 Study load_study(const std::string& name_or_path);
 
 /// One series at one point on each of the GPUs.
-std::vector<StudyValue> run_series(const Study& study, const StudySeries& series,
-                                   const std::map<std::string, std::string>& point,
+std::vector<StudyValue> run_series(const Study& study, const StudySeries& series, const StudyPoint& point,
                                    const std::vector<std::string>& gpus, const GeometryRunOptions& options);
 
+/// Throws sim::InputError for a file that asks for what there is not.
 /// @param gpus empty: those that the study names
 StudyResult run_study(const Study& study, const std::vector<std::string>& gpus, const GeometryRunOptions& options);
 

@@ -40,7 +40,8 @@ constexpr const char* geometry_help = R"(Examples:
 
 constexpr const char* validate_help = R"(Examples:
   ropsim validate geometry
-  ropsim validate geometry --gpus g70,r420 --leave-one-out --out validation)";
+  ropsim validate geometry --gpus g70,r420 --leave-one-out --out validation
+  ropsim validate peeling --out peeling)";
 
 constexpr const char* calibrate_help = R"(Examples:
   ropsim calibrate geometry                      what the measurements say, beside what the files say
@@ -136,10 +137,13 @@ void add_geometry(CLI::App& command, GeometryCommand& options) {
     command.footer(geometry_help);
 }
 
-void add_measure(CLI::App& command, MeasureCommand& options, const char* footer) {
+constexpr const char* usual_fidelity = "estimate or detailed (default detailed)";
+
+void add_measure(CLI::App& command, MeasureCommand& options, const char* footer,
+                 const char* fidelity = usual_fidelity) {
     command.add_option("--gpus", options.gpus, "GPUs, separated by commas (default: all that were measured)")
         ->type_name("NAMES");
-    command.add_option("--fidelity", options.fidelity, "estimate or detailed (default detailed)")->type_name("NAME");
+    command.add_option("--fidelity", options.fidelity, fidelity)->type_name("NAME");
     command.add_option("--threads", options.threads, "Threads (default: all cores); results do not depend on it")
         ->type_name("N");
     command.add_flag("--json", options.json, "Print one JSON document on standard output, and nothing else");
@@ -179,12 +183,16 @@ struct Parser {
                      geometry);
 
         command = app.add_subcommand("validate", "The model beside published measurements");
-        command->add_option("target", validate.target, "What to validate: geometry")->required()->type_name("WHAT");
+        command->add_option("target", validate.target, "What to validate: geometry or peeling")
+            ->required()
+            ->type_name("WHAT");
         command->add_flag("--leave-one-out", validate.leave_one_out,
                           "Also how predictions move when other rows determine the calibrated numbers");
         command->add_option("--out", validate.directory, "Folder for validation.json, tables and a page")
             ->type_name("DIR");
-        add_measure(*command, validate, validate_help);
+        add_measure(
+            *command, validate, validate_help,
+            "geometry: estimate or detailed (default detailed); peeling: sampled or detailed (default sampled)");
 
         command = app.add_subcommand("calibrate", "Fit numbers of GPU files to published measurements");
         command->add_option("target", calibrate.target, "What to calibrate: geometry")->required()->type_name("WHAT");

@@ -59,7 +59,7 @@ _ropsim() {
         geometry)
             [[ $word == -* ]] && _ropsim_words "--gpu --prepare --submission --reads --fidelity --seed --set --export --out --json --help" ||
                 _ropsim_files glb gltf ;;
-        validate) [[ $word == -* ]] && _ropsim_words "--leave-one-out --out $measure" || _ropsim_words geometry ;;
+        validate) [[ $word == -* ]] && _ropsim_words "--leave-one-out --out $measure" || _ropsim_words "geometry peeling" ;;
         calibrate) [[ $word == -* ]] && _ropsim_words "--write $measure" || _ropsim_words geometry ;;
         study) [[ $word == -* ]] && _ropsim_words "--out $measure" || _ropsim_words "$(_ropsim_names studies)" ;;
         describe)

@@ -117,6 +117,11 @@ reports::GeometryRequest request_of(const GeometryCommand& command) {
 
 reports::Fidelity fidelity_of(const std::string& text) { return parse_choice<reports::Fidelity>("--fidelity", text); }
 
+reports::PeelingFidelity peeling_fidelity_of(const std::string& text) {
+    return text.empty() ? reports::PeelingFidelity::sampled
+                        : parse_choice<reports::PeelingFidelity>("--fidelity", text);
+}
+
 unsigned threads_of(const std::string& text) { return text.empty() ? reports::core_count() : parse_threads(text); }
 
 std::vector<std::string> list_of(const std::string& text) {

@@ -3,6 +3,7 @@
 
 #include "reports/comparison.hpp"
 #include "reports/geometry/advice.hpp"
+#include "reports/peeling/validation.hpp"
 
 #include <optional>
 #include <string>
@@ -75,6 +76,7 @@ struct MeasureCommand {
     bool json = false;
 };
 struct ValidateCommand : MeasureCommand {
+    ValidateCommand() { fidelity.clear(); } ///< the usual one depends on the target
     bool leave_one_out = false;
 };
 struct CalibrateCommand : MeasureCommand {};
@@ -97,6 +99,8 @@ reports::GeometryRequest request_of(const GeometryCommand& command);
 
 /// "estimate" or "detailed"; a number of threads, "" for all cores; a list separated by commas. Throw sim::InputError.
 reports::Fidelity fidelity_of(const std::string& text);
+/// "sampled", which "" stands for, or "detailed".
+reports::PeelingFidelity peeling_fidelity_of(const std::string& text);
 unsigned threads_of(const std::string& text);
 std::vector<std::string> list_of(const std::string& text);
 

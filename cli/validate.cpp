@@ -6,13 +6,18 @@
 #include "reports/geometry/page.hpp"
 #include "reports/geometry/tables.hpp"
 #include "reports/geometry/text.hpp"
+#include "reports/peeling/report.hpp"
 #include "reports/result.hpp"
+#include "sim/check.hpp"
+
+#include <fmt/format.h>
 
 namespace cli {
 
-void validate(const ValidateCommand& command) {
-    expect_geometry("validate", command.target);
-    Measuring measuring(command.fidelity, command.threads);
+namespace {
+
+void validate_geometry(const ValidateCommand& command) {
+    Measuring measuring(command.fidelity.empty() ? "detailed" : command.fidelity, command.threads);
     const auto validation = reports::validate_geometry(list_of(command.gpus), measuring.options());
     std::vector<reports::LeftOneOut> exchanged;
     if (command.leave_one_out) exchanged = reports::leave_one_out(list_of(command.gpus), measuring.options());
@@ -27,6 +32,41 @@ void validate(const ValidateCommand& command) {
     std::string text = reports::validation_text(validation, terminal_style());
     if (!exchanged.empty()) text += "\n" + reports::leave_one_out_text(exchanged, terminal_style());
     print(text + written);
+}
+
+void check_peeling(const ValidateCommand& command, const std::string& gpu) {
+    for (const std::string& name : list_of(command.gpus))
+        if (name != gpu) throw sim::InputError(fmt::format("--gpus: '{}' was not measured; expected {}", name, gpu));
+    if (command.leave_one_out)
+        throw sim::InputError("--leave-one-out: no other row could determine what peeling calibrates");
+}
+
+void validate_peeling(const ValidateCommand& command) {
+    const reports::PublishedPeeling published = reports::load_published_peeling();
+    check_peeling(command, published.gpu);
+    reports::PeelingOptions options;
+    options.fidelity = peeling_fidelity_of(command.fidelity);
+    Measuring measuring("detailed", command.threads);
+    options.threads = measuring.options().threads;
+    options.stop = measuring.options().stop;
+    options.progress = measuring.options().progress;
+    const auto validation = reports::validate_peeling(published, options);
+    measuring.end();
+    const auto document = reports::peeling_json(validation);
+    std::string written;
+    if (!command.directory.empty())
+        written = "\n" + write_tables(command.directory, "validation.json", document,
+                                      {reports::peeling_table(validation)}, reports::peeling_page(validation));
+    print(command.json ? reports::result_text(document)
+                       : reports::peeling_text(validation, terminal_style()) + written);
+}
+
+} // namespace
+
+void validate(const ValidateCommand& command) {
+    if (command.target == "geometry") return validate_geometry(command);
+    if (command.target == "peeling") return validate_peeling(command);
+    throw sim::InputError(fmt::format("validate: expected geometry or peeling, got '{}'", command.target));
 }
 
 } // namespace cli

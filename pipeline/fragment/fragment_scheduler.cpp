@@ -157,6 +157,17 @@ bool FragmentScheduler::at_batch_boundary(const QuadTask& task) const {
     return batch_ != ~std::uint32_t{0} && batch != batch_;
 }
 
+// What the flushing quads take that lie between two batches. Batches and quads take turns among the draws (see
+// traces/submission.hpp). Batches without a fragment are never seen here, but their quads cover the screen like all
+// others.
+sim::Cycle FragmentScheduler::cover_cycles(std::uint32_t from_draw, std::uint32_t to_draw) const {
+    const std::uint32_t rate = flush_.quad_pixels_per_clk;
+    if (rate == 0) return 0;
+    const std::uint64_t pixels = std::uint64_t{pass_->layout.width} * pass_->layout.height;
+    const std::uint32_t quads = flush_.every_draw ? std::max(1U, (to_draw - from_draw) / 2) : 1;
+    return quads * ((pixels + rate - 1) / rate);
+}
+
 // Drain, then command write-back and invalidation in band, then wait for the ROPs' answers. Without `drain` the
 // commands follow the quads already dispatched. The quad that forces the flush is drawn behind it, before later quads.
 bool FragmentScheduler::advance_flush(bool& progress) {
@@ -184,9 +195,7 @@ bool FragmentScheduler::advance_flush(bool& progress) {
     }
     if (flush_state_ == FlushState::acknowledging) {
         if (flush_.drain && flush_.writeback && acknowledged_ < commits_in.size()) return false;
-        const std::uint64_t pixels = std::uint64_t{pass_->layout.width} * pass_->layout.height;
-        const std::uint32_t rate = flush_.quad_pixels_per_clk;
-        covered_at_ = cycle() + (rate == 0 ? 0 : (pixels + rate - 1) / rate);
+        covered_at_ = cycle() + cover_cycles_;
         flush_state_ = FlushState::covering;
     }
     if (covered_at_ > cycle()) {
@@ -209,6 +218,7 @@ sim::Activity FragmentScheduler::accept(bool progress) {
             acknowledged_ = 0;
             invalidates_sent_ = 0;
             writeback_sent_ = false;
+            cover_cycles_ = cover_cycles(batch_, pass_->stream->draw_of(input->quad));
             ++stats_.flushes;
             batch_ = ~std::uint32_t{0};
         }

@@ -84,6 +84,7 @@ class FragmentScheduler final : public sim::Component {
     bool choose_pipe(const Quad& quad);
     void count_order(QuadTask& task);
     bool at_batch_boundary(const QuadTask& task) const;
+    sim::Cycle cover_cycles(std::uint32_t from_draw, std::uint32_t to_draw) const;
     bool advance_flush(bool& progress);
     bool touches_kbuffer(const QuadTask& task) const {
         return task.mask != 0 && pass_->end != FragmentEnd::depth_colour;
@@ -114,7 +115,8 @@ class FragmentScheduler final : public sim::Component {
     std::uint32_t acknowledged_ = 0;
     std::uint32_t batch_ = ~std::uint32_t{0};
     sim::Cycle flush_since_ = 0;
-    sim::Cycle covered_at_ = 0; ///< the flushing quad has been drawn
+    sim::Cycle cover_cycles_ = 0; ///< of the flushing quads of this flush
+    sim::Cycle covered_at_ = 0;   ///< they have been drawn
     std::uint32_t invalidates_sent_ = 0;
     bool writeback_sent_ = false;
 };

@@ -16,10 +16,9 @@ constexpr std::uint32_t vertices_per_piece = 8192;
 constexpr std::uint32_t primitives_per_piece = 2048;
 constexpr std::uint64_t largest_count = std::numeric_limits<std::uint32_t>::max();
 
-void cut_into_pieces(std::vector<PlannedPiece>& pieces, std::uint32_t instance, std::uint32_t count,
-                     std::uint32_t size) {
+void cut_into_pieces(std::vector<PlannedPiece>& pieces, std::uint32_t of, std::uint32_t count, std::uint32_t size) {
     for (std::uint32_t first = 0; first < count; first += std::min(size, count - first))
-        pieces.push_back({instance, first, std::min(size, count - first)});
+        pieces.push_back({of, first, std::min(size, count - first)});
 }
 
 /// What a piece of primitives becomes. Numbers count from the piece's own first triangle and quad.
@@ -37,8 +36,8 @@ class Coverage {
         : plan_(plan),
           stream_(stream),
           output_(output),
-          range_(stream.draws[piece.instance]),
-          instance_(plan.instances[piece.instance]),
+          range_(stream.draws[piece.of]),
+          instance_(plan.instances[piece.of]),
           read_(plan.resources, *instance_.geometry) {
         output_.triangles.reserve(piece.count);
         for (std::uint32_t i = 0; i < piece.count; ++i) cover(piece.first + i);
@@ -104,7 +103,7 @@ void store(const PlannedPiece& piece, CoveredPiece& covered, FragmentStream& str
         source.triangle += covered.first_triangle;
         *quad++ = source;
     }
-    Primitive* primitive = stream.primitives.data() + stream.draws[piece.instance].first_primitive + piece.first;
+    Primitive* primitive = stream.primitives.data() + stream.draws[piece.of].first_primitive + piece.first;
     for (std::uint32_t i = 0; i < piece.count; ++i) primitive[i].first_triangle += covered.first_triangle;
     covered = CoveredPiece{};
 }
@@ -112,7 +111,7 @@ void store(const PlannedPiece& piece, CoveredPiece& covered, FragmentStream& str
 void count_quads_of_draws(const std::vector<PlannedPiece>& pieces, const std::vector<CoveredPiece>& covered,
                           FragmentStream& stream) {
     for (std::size_t i = 0; i < pieces.size(); ++i) {
-        DrawRange& range = stream.draws[pieces[i].instance];
+        DrawRange& range = stream.draws[pieces[i].of];
         if (pieces[i].first == 0) range.first_quad = covered[i].first_quad;
         range.quads += static_cast<std::uint32_t>(covered[i].quads.size());
     }
@@ -128,19 +127,18 @@ void count_quads_of_draws(const std::vector<PlannedPiece>& pieces, const std::ve
 
 void transform_pass(FrontEndPlan& plan) {
     std::vector<PlannedPiece> pieces;
-    for (std::uint32_t i = 0; i < plan.instances.size(); ++i)
-        cut_into_pieces(pieces, i, plan.instances[i].used.end - plan.instances[i].used.first, vertices_per_piece);
+    for (std::uint32_t i = 0; i < plan.runs.size(); ++i)
+        cut_into_pieces(pieces, i, plan.runs[i].used.end - plan.runs[i].used.first, vertices_per_piece);
     plan.progress.begin_pass(pieces.size(), 0.05);
     parallel_for(plan.options.threads, pieces.size(), [&](std::size_t i) {
         plan.progress.begin_piece();
         const PlannedPiece& piece = pieces[i];
-        const PlannedInstance& instance = plan.instances[piece.instance];
-        const glm::mat4 matrix = clip_matrix(plan.view, *instance.model);
-        const AttributeReader position(plan.resources, *instance.geometry->find(Semantic::position));
-        ScreenVertex* target = plan.vertices.data() + instance.first_vertex + piece.first;
+        const PlannedVertices& run = plan.runs[piece.of];
+        const glm::mat4 matrix = clip_matrix(plan.view, *run.model);
+        const AttributeReader position(plan.resources, *run.geometry->find(Semantic::position));
+        ScreenVertex* target = plan.vertices.data() + run.first_vertex + piece.first;
         for (std::uint32_t vertex = 0; vertex < piece.count; ++vertex)
-            target[vertex] =
-                transform_vertex(matrix, plan.viewport, position(instance.used.first + piece.first + vertex));
+            target[vertex] = transform_vertex(matrix, plan.viewport, position(run.used.first + piece.first + vertex));
         plan.progress.end_piece();
     });
 }

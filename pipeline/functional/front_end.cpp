@@ -3,10 +3,14 @@
 #include "pipeline/functional/front_end_passes.hpp"
 #include "sim/check.hpp"
 
+#include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
 #include <map>
+#include <tuple>
 
 namespace pipeline {
 
@@ -40,11 +44,63 @@ void check_draw(const Resources& resources, const std::vector<Draw>& draws, std:
     for (const glm::mat4& model : draw.instances) require(finite(model), "model matrices of finite numbers");
 }
 
+/// Finds the vertices of instances. Thousands of small draws may read the same ones: those are transformed once, or the
+/// vertices would grow with the product of draws and index range.
+class VertexRuns {
+  public:
+    explicit VertexRuns(std::vector<PlannedVertices>& runs) : runs_(runs) {}
+
+    std::uint32_t run_of(const Geometry& geometry, const glm::mat4& model, const VertexRange& used) {
+        const auto next = static_cast<std::uint32_t>(runs_.size());
+        std::uint32_t& last = last_.try_emplace(key_of(geometry, model), next).first->second;
+        if (last < next && join(runs_[last].used, used)) return last;
+        runs_.push_back({&geometry, &model, used, 0});
+        return last = next;
+    }
+
+    /// Returns how many vertices there are.
+    std::uint64_t place() {
+        std::uint64_t vertices = 0;
+        for (PlannedVertices& run : runs_) {
+            run.first_vertex = vertices;
+            vertices += run.used.end - run.used.first;
+        }
+        return vertices;
+    }
+
+  private:
+    using Key = std::tuple<std::uint32_t, std::uint64_t, std::uint32_t, ComponentType, std::uint8_t, bool,
+                           std::array<std::uint32_t, 16>>;
+
+    // Bits of the matrix: what transforms alike in every bit.
+    static Key key_of(const Geometry& geometry, const glm::mat4& model) {
+        const VertexAttribute& position = *geometry.find(Semantic::position);
+        return {position.buffer,
+                position.offset,
+                position.stride,
+                position.type,
+                position.components,
+                position.normalized,
+                std::bit_cast<std::array<std::uint32_t, 16>>(model)};
+    }
+
+    // Ranges that overlap become one; ranges with a gap between them do not.
+    static bool join(VertexRange& run, const VertexRange& used) {
+        if (used.first > run.end || run.first > used.end) return false;
+        run = {std::min(run.first, used.first), std::max(run.end, used.end)};
+        return true;
+    }
+
+    std::vector<PlannedVertices>& runs_;
+    std::map<Key, std::uint32_t> last_; ///< run that was found last, or as many as there were
+};
+
 /// Lays out the instances, their primitives and their vertices.
 void make_plan(FrontEndPlan& plan, FragmentStream& stream, const std::vector<Draw>& draws,
                std::span<const std::uint32_t> which) {
     std::map<std::uint32_t, VertexRange> used;
-    std::uint64_t vertices = 0, primitives = 0;
+    VertexRuns runs(plan.runs);
+    std::uint64_t primitives = 0;
     for (const std::uint32_t number : which) {
         check_draw(plan.resources, draws, number);
         const Draw& draw = draws[number];
@@ -55,20 +111,19 @@ void make_plan(FrontEndPlan& plan, FragmentStream& stream, const std::vector<Dra
         if (known == used.end()) known = used.emplace(draw.geometry, used_vertices(plan.resources, geometry)).first;
         for (std::size_t i = 0; i < draw.instances.size(); ++i) {
             const glm::mat4& model = draw.instances[i];
-            plan.instances.push_back({&geometry, &material, &model, known->second, vertices,
+            plan.instances.push_back({&geometry, &material, &model, runs.run_of(geometry, model, known->second),
                                       culling_of(plan.options.both_faces || material.double_sided, model)});
             if (primitives + count > std::numeric_limits<std::uint32_t>::max())
                 throw sim::InputError(
                     fmt::format("draw {} \"{}\": expected at most 2^32 - 1 primitives in a pass", number, draw.name));
             stream.draws.push_back(
                 {number, static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(primitives), count, 0, 0});
-            vertices += known->second.end - known->second.first;
             primitives += count;
         }
     }
     stream.draws.shrink_to_fit();
     stream.primitives.resize(primitives);
-    plan.vertices.resize(vertices);
+    plan.vertices.resize(runs.place());
 }
 
 } // namespace

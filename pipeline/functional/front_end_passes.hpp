@@ -10,19 +10,26 @@
 
 namespace pipeline {
 
+/// Vertices that are transformed by one matrix, for all instances whose indices lie among them.
+struct PlannedVertices {
+    const Geometry* geometry = nullptr; ///< one of those that read them
+    const glm::mat4* model = nullptr;
+    VertexRange used;
+    std::uint64_t first_vertex = 0; ///< where they lie in FrontEndPlan::vertices
+};
+
 /// One instance of one draw.
 struct PlannedInstance {
     const Geometry* geometry = nullptr;
     const Material* material = nullptr;
     const glm::mat4* model = nullptr;
-    VertexRange used;               ///< vertices that are transformed
-    std::uint64_t first_vertex = 0; ///< where they lie in FrontEndPlan::vertices
+    std::uint32_t run = 0; ///< of FrontEndPlan::runs
     Culling culling = Culling::none;
 };
 
-/// A run of vertices or primitives of one instance: one piece of work.
+/// Some vertices of one run, or primitives of one instance: one piece of work.
 struct PlannedPiece {
-    std::uint32_t instance = 0;
+    std::uint32_t of = 0; ///< number of the run or instance
     std::uint32_t first = 0;
     std::uint32_t count = 0;
 };
@@ -52,6 +59,7 @@ struct FrontEndPlan {
     Viewport viewport;
     FrontEndProgress progress;
     std::vector<PlannedInstance> instances; ///< parallel to FragmentStream::draws
+    std::vector<PlannedVertices> runs;
     std::vector<ScreenVertex> vertices;
 
     FrontEndPlan(const Resources& resources_, const View& view_, const FrontEndOptions& options_)
@@ -64,8 +72,8 @@ struct FrontEndPlan {
     /// The three transformed vertices of a primitive.
     std::array<const ScreenVertex*, 3> corners(const PlannedInstance& instance,
                                                const std::array<std::uint32_t, 3>& vertices_of_primitive) const {
-        const ScreenVertex* base = vertices.data() + instance.first_vertex;
-        const std::uint32_t first = instance.used.first;
+        const ScreenVertex* base = vertices.data() + runs[instance.run].first_vertex;
+        const std::uint32_t first = runs[instance.run].used.first;
         return {base + (vertices_of_primitive[0] - first), base + (vertices_of_primitive[1] - first),
                 base + (vertices_of_primitive[2] - first)};
     }

@@ -102,7 +102,8 @@ double total_bytes(const Frame& frame, const std::set<std::uint32_t>& buffers) {
 bool fits(const HostParams& params, const Frame& frame) {
     if (params.vram_mb <= 0 || frame.submission != Submission::buffers) return true;
     std::set<std::uint32_t> used;
-    for (std::uint32_t draw = 0; draw < frame.draws.size(); ++draw) used.merge(buffers_of(frame, draw));
+    for (const Pass& pass : frame.passes)
+        for (const std::uint32_t draw : pass.draws) used.merge(buffers_of(frame, draw));
     return total_bytes(frame, used) <= params.vram_mb * bytes_per_mb;
 }
 

@@ -83,8 +83,10 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{{"geometry", "gen:grass?index=u16"}, 1, "at most 65536 vertices in a draw"},
         Mistake{{"geometry", "gen:grass?attributes=normal:5f32"}, 1, "1 to 4 components"},
         Mistake{{"geometry"}, 2, "scene is required"},
-        Mistake{{"validate", "geometri"}, 1, "expected geometry, got 'geometri'"},
+        Mistake{{"validate", "geometri"}, 1, "expected geometry or peeling, got 'geometri'"},
         Mistake{{"validate", "geometry", "--gpus", "g80"}, 1, "'g80' was not measured"},
+        Mistake{{"validate", "peeling", "--gpus", "g70"}, 1, "'g70' was not measured"},
+        Mistake{{"validate", "peeling", "--fidelity", "estimate"}, 1, "expected one of sampled, detailed"},
         Mistake{{"calibrate", "geometry", "--write", "/no/such"}, 1, "--write: /no/such"},
         Mistake{{"study", "batchin"}, 1, "did you mean 'batching'?"},
         Mistake{{"study", "/no/such.toml"}, 1, "/no/such.toml: cannot be read"}));

@@ -1,0 +1,156 @@
+// Depth peeling on the GPU that it was measured on. Source: specification 004, sections 4.8 and 7.5, checks K8 and K9.
+#include "reports/peeling/report.hpp"
+#include "tests/support/replay.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <map>
+
+namespace {
+
+using reports::PeelingColumn;
+using reports::PublishedPeeling;
+
+const PublishedPeeling& published() {
+    static const PublishedPeeling tables = reports::load_published_peeling();
+    return tables;
+}
+
+const reports::PeelingMeasurement& row_of(const std::string& dataset, std::uint32_t k) {
+    for (const auto& row : published().rows)
+        if (row.dataset == dataset && row.k == k) return row;
+    throw std::out_of_range(dataset);
+}
+
+// Model numbers of one row by what they are, from its two smallest stand-ins.
+std::map<std::string, double> model_of(const std::string& dataset, std::uint32_t k) {
+    const auto& row = row_of(dataset, k);
+    std::vector<reports::StandInRun> runs;
+    for (std::size_t i = 0; i < 2; ++i)
+        runs.push_back(reports::run_stand_in(published(), row, published().dataset(dataset).sizes[i]));
+    std::map<std::string, double> model;
+    for (const auto& number : reports::peeling_numbers(published(), row, runs))
+        model[number.row.row.substr(number.row.row.rfind(", ") + 2)] = number.row.model;
+    return model;
+}
+
+struct Expected {
+    const char* dataset;
+    double least, most; ///< of SP/SPwH
+};
+
+void expect_k8_and_k9(const Expected& expected) {
+    auto four = model_of(expected.dataset, 4), sixteen = model_of(expected.dataset, 16);
+    EXPECT_GE(four["SP/MP"], 3.3);
+    EXPECT_LE(four["SP/MP"], 4.3);
+    EXPECT_GE(sixteen["SP/MP"], 13);
+    EXPECT_LE(sixteen["SP/MP"], 17);
+    EXPECT_NEAR(four["SP"] / sixteen["SP"], 1, 0.01);
+    EXPECT_NEAR(four["MP"] / sixteen["MP"], 4.0, 0.03 * 4.0);
+    for (auto* numbers : {&four, &sixteen}) {
+        EXPECT_GE((*numbers)["batch"], 11);
+        EXPECT_LE((*numbers)["batch"], 15);
+        EXPECT_LT((*numbers)["SPwH"], (*numbers)["MP"]);
+        EXPECT_GE((*numbers)["SP/SPwH"], expected.least);
+        EXPECT_LE((*numbers)["SP/SPwH"], expected.most);
+    }
+}
+
+} // namespace
+
+TEST(Peeling, LongK8AndK9_Dragon) { expect_k8_and_k9({"Dragon", 40, 60}); }
+TEST(Peeling, LongK8AndK9_Powerplant) { expect_k8_and_k9({"Powerplant", 80, 135}); }
+
+TEST(Peeling, K8_OnePassWinsAboutKTimesWhereVerticesAreTheLimit) {
+    const auto run = reports::run_stand_in(published(), row_of("Powerplant", 4), 24'000);
+    const auto more = reports::run_stand_in(published(), row_of("Powerplant", 4), 48'000);
+    // Of the triangles that the second run has more than the first: clears and copies drop out.
+    const double ratio = (more.milliseconds[0] - run.milliseconds[0]) / (more.milliseconds[1] - run.milliseconds[1]);
+    EXPECT_GE(ratio, 3.3);
+    EXPECT_LE(ratio, 4.3);
+    EXPECT_EQ(run.triangles, 24'000U);
+}
+
+// 20,000 triangles on 16x16 pixels: most batches make no fragment, yet each is followed by a quad over the screen, here
+// one pixel a cycle.
+TEST(Peeling, K9_BatchesWithoutFragmentsTakeTheTimeOfTheirQuads) {
+    const support::Replay replay("gen:blob?triangles=20000&attributes=none", {.width = 16, .height = 16});
+    const auto run = [&](const char* rate) {
+        return replay.run("sorted-batched",
+                          {std::string("sorted-batched.batches.flush_quad_px_per_clk=") + rate,
+                           "geometry.command_processor.draw_cpu_us=0", "geometry.command_processor.draw_gpu_cycles=0"});
+    };
+    constexpr double all_quads = 20000 / 32 * 16 * 16; // cycles
+    const auto with = run("1"), without = run("0");
+    EXPECT_LT(support::counter(with.stages, "fragment_scheduler/counters/flushes"), 20000U / 32 / 2);
+    EXPECT_LT(static_cast<double>(without.cycles), 0.8 * all_quads);
+    EXPECT_GE(static_cast<double>(with.cycles), 0.9 * all_quads);
+}
+
+TEST(Peeling, K9_TheComputerLimitsBatchesWhenItsDrawCallsAreSlow) {
+    const support::Replay replay("gen:blob?triangles=4000&attributes=none", {.width = 64, .height = 64});
+    // Two calls of 10 us per batch are 13,000 cycles at 650 MHz; what the GPU does lies behind them.
+    const auto run = replay.run("sorted-batched", {"geometry.command_processor.draw_cpu_us=10"});
+    EXPECT_NEAR(static_cast<double>(run.cycles) / 125, 13000, 0.03 * 13000);
+}
+
+TEST(Peeling, ManySmallDrawsOfTheSameVerticesMakeTheSameStream) {
+    const support::Replay whole("gen:grid-soup?boxes=500&boxes_per_draw=500"),
+        parts("gen:grid-soup?boxes=500&boxes_per_draw=7");
+    EXPECT_EQ(whole.kbuffer_stream().fragments, parts.kbuffer_stream().fragments);
+    EXPECT_EQ(whole.kbuffer_stream().depths, parts.kbuffer_stream().depths);
+    EXPECT_GT(whole.kbuffer_stream().fragments, 0U);
+}
+
+TEST(PeelingTable, PrintedDigitsSayHowFarANumberWasRounded) {
+    EXPECT_DOUBLE_EQ(reports::printed_number("41.4").low(), 41.35);
+    EXPECT_DOUBLE_EQ(reports::printed_number("139").high(), 139.5);
+    EXPECT_THROW(reports::printed_number("x"), sim::InputError);
+    EXPECT_THROW(reports::printed_number("0"), sim::InputError);
+}
+
+TEST(PeelingTable, LinesGoThroughTheirPointsAndTellHowFarTheyMiss) {
+    const auto exact = reports::line_value({1, 2, 4}, {3, 5, 9}, 10);
+    EXPECT_NEAR(exact.value, 21, 1e-12);
+    EXPECT_NEAR(exact.residual, 0, 1e-12);
+    EXPECT_NEAR(reports::line_value({0, 1, 2}, {0, 1.5, 2}, 1).residual, 1.0 / 6, 1e-12);
+    EXPECT_EQ(reports::line_value({5}, {7}, 100).value, 7);
+}
+
+TEST(PeelingTable, RatiosAndBatchTimesFollowFromTheColumnsWithTheirRanges) {
+    const auto& row = row_of("Dragon", 4);
+    // As fast as published, to the digit.
+    const auto numbers = reports::peeling_numbers(published(), row, {{871'000, {1e3 / 41.4, 1e3 / 139, 1e3 / 3.1}, 0}});
+    ASSERT_EQ(numbers.size(), 7U);
+    EXPECT_NEAR(numbers[3].printed, 3.36, 0.005); // SP/MP
+    EXPECT_NEAR(numbers[3].row.low, 3.35, 0.005);
+    EXPECT_NEAR(numbers[6].printed, 11.9, 0.05); // us per batch
+    for (const auto& number : numbers) {
+        EXPECT_NEAR(number.row.model, number.printed, 1e-9 * number.printed);
+        EXPECT_NEAR(number.row.ratio(), 1, 1e-12);
+    }
+    EXPECT_EQ(numbers[0].row.status, reports::RowStatus::calibrated);
+    EXPECT_EQ(numbers[1].row.status, reports::RowStatus::predicted);
+}
+
+TEST(PeelingTable, EveryNoteBelongsToANumberAndMostNumbersArePredicted) {
+    EXPECT_EQ(published().rows.size(), 6U);
+    EXPECT_EQ(published().calibrated.size(), 2U);
+    for (const auto* notes : {&published().calibrated, &published().explanations})
+        for (const auto& note : *notes)
+            EXPECT_TRUE(std::any_of(published().rows.begin(), published().rows.end(), [&](const auto& row) {
+                return row.dataset == note.dataset && row.buffer == note.buffer;
+            }));
+}
+
+TEST(PeelingTable, StandInsKeepTheSizeOfTheirTriangles) {
+    const auto& dragon = published().dataset("Dragon");
+    EXPECT_EQ(dragon.camera_of(dragon.triangles).substr(dragon.camera_of(dragon.triangles).rfind(',') + 1), "45");
+    const auto fragments = [&](std::uint64_t size) {
+        const support::Replay replay(dragon.scene_of(size),
+                                     {.width = 512, .height = 512, .camera = dragon.camera_of(size)});
+        return static_cast<double>(replay.kbuffer_stream().fragments) / static_cast<double>(size);
+    };
+    EXPECT_NEAR(fragments(20'000) / fragments(60'000), 1, 0.05);
+}

@@ -38,8 +38,9 @@ struct VolumeParams {
             sim::field<&P::transfer>(
                 "extinction of a scalar: ramp, none at the low end of the range and all at the high "
                 "one; uniform, all everywhere"),
-            sim::field<&P::extinction>("at the high end of the range, in 1 / scene unit; less than 0: 12 divided by the "
-                                       "radius of the scene")
+            sim::field<&P::extinction>(
+                "at the high end of the range, in 1 / scene unit; less than 0: 12 divided by the "
+                "radius of the scene")
                 .at_most(1e30),
             sim::field<&P::range>("scalars where the colours begin and end; none: the least and the largest"),
             sim::field<&P::k>("samples sorted per pixel").unit("samples").range(1, 64),

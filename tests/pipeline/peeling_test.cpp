@@ -23,12 +23,15 @@ const reports::PeelingMeasurement& row_of(const std::string& dataset, std::uint3
     throw std::out_of_range(dataset);
 }
 
-// Model numbers of one row by what they are, from its two smallest stand-ins.
+// Model numbers of one row by what they are.
 std::map<std::string, double> model_of(const std::string& dataset, std::uint32_t k) {
     const auto& row = row_of(dataset, k);
+    const reports::PeelingDataset& data = published().dataset(dataset);
+    // The whole mesh where that is small enough, else a line through two stand-ins.
+    std::vector<std::uint64_t> sizes{data.sizes[0], data.sizes[1]};
+    if (data.triangles <= 1'000'000) sizes = {data.triangles};
     std::vector<reports::StandInRun> runs;
-    for (std::size_t i = 0; i < 2; ++i)
-        runs.push_back(reports::run_stand_in(published(), row, published().dataset(dataset).sizes[i]));
+    for (const std::uint64_t size : sizes) runs.push_back(reports::run_stand_in(published(), row, size));
     std::map<std::string, double> model;
     for (const auto& number : reports::peeling_numbers(published(), row, runs))
         model[number.row.row.substr(number.row.row.rfind(", ") + 2)] = number.row.model;

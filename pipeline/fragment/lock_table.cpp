@@ -94,9 +94,9 @@ bool LockTable::take_releases() {
 
 bool LockTable::take_requests() {
     bool progress = false;
-    for (std::uint16_t pipe = 0; pipe < requests_in.size(); ++pipe)
+    for (std::size_t pipe = 0; pipe < requests_in.size(); ++pipe)
         while (requests_in[pipe].peek() != nullptr) {
-            const Waiting arrived{requests_in[pipe].receive(), pipe, cycle(), nobody};
+            const Waiting arrived{requests_in[pipe].receive(), static_cast<std::uint16_t>(pipe), cycle(), nobody};
             ++stats_.requests;
             progress = true;
             if (try_enter(arrived.request)) {

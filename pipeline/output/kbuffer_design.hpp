@@ -217,10 +217,6 @@ struct sim::EnumNames<pipeline::Retirement> {
     static constexpr std::array<std::string_view, 2> names{"in_order", "out_of_order"};
 };
 template <>
-struct sim::EnumNames<pipeline::CriticalSection> {
-    static constexpr std::array<std::string_view, 3> names{"none", "ordered", "unordered"};
-};
-template <>
 struct sim::EnumNames<pipeline::LockArea> {
     static constexpr std::array<std::string_view, 3> names{"pixel", "quad", "tile"};
 };

@@ -210,6 +210,8 @@ struct View {
     glm::mat4 view{1.0F};
     glm::mat4 projection{1.0F}; ///< to clip space with -w <= z <= w mapped to window depth [0,1] by (z/w+1)/2
     std::uint32_t width = 512, height = 512; ///< pixels, 1 to 16384
+
+    std::size_t pixels() const { return std::size_t{width} * height; }
 };
 
 } // namespace pipeline

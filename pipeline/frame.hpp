@@ -9,6 +9,7 @@
 #include "pipeline/resolve.hpp"
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,8 +29,7 @@ enum class Submission : std::uint8_t {
 enum class PassKind : std::uint8_t {
     clear,   ///< sets `writes` to their initial values
     draw,    ///< rasterizes `draws`
-    resolve, ///< one full-screen pass that reads the k-buffer and writes the picture; not timed (specification W2, pass
-             ///< 2)
+    resolve, ///< reads the finished surfaces and writes the picture; timed where Frame::resolve says how
 };
 
 /// `over`: rgb = source * a + target * (1 - a), alpha = a + target * (1 - a), with a = source alpha, colours not
@@ -56,6 +56,7 @@ struct Pass {
     std::vector<std::uint32_t> draws; ///< indices into Frame::draws; draw passes only
     DepthState depth;
     bool colour = false;                  ///< writes the shaded colour to the "colour" surface
+    std::uint32_t colour_targets = 1;     ///< written at once, all of the colour format; the first holds the colour
     BlendMode blend = BlendMode::replace; ///< how; but for replace, Frame::opacity scales the alpha
     bool both_faces = false;              ///< draws triangles that face away, too
     bool kbuffer = false;                 ///< fragments go through the frame's modify program
@@ -91,7 +92,11 @@ struct Frame {
     std::string workload;
     std::shared_ptr<const Resources> resources;
     std::vector<Draw> draws;
-    View view;
+    View view; ///< of the eye
+    /// Of the passes that fill the k-buffer, where they see the scene from elsewhere: from a light.
+    std::optional<View> kbuffer_view;
+    /// Index into `draws` of the triangle that covers the screen, for the screen passes of `resolve`.
+    std::optional<std::uint32_t> screen_draw;
     Submission submission = Submission::buffers;
     std::vector<Pass> passes;
     Needs needs;
@@ -102,6 +107,20 @@ struct Frame {
     ColourFormat colour_format = ColourFormat::rgba8;
     glm::vec4 background{1.0F};
     float opacity = 0.5F; ///< uniform alpha of composited layers (A11)
+
+    const View& view_of_kbuffer() const { return kbuffer_view ? *kbuffer_view : view; }
+    const View& view_of(const Pass& pass) const { return pass.kbuffer ? view_of_kbuffer() : view; }
+    /// `needs` without what this pass does not read: one that shades no colour wants colours, normals and textures only
+    /// as far as an alpha test may read them.
+    Needs needs_of(const Pass& pass) const {
+        Needs own = needs;
+        if (pass.colour || (pass.kbuffer && program->needs_colour())) return own;
+        own.colours = own.normals = false;
+        own.vertex_colours &= own.alpha_test;
+        own.textures &= own.alpha_test;
+        own.texcoords &= own.alpha_test;
+        return own;
+    }
 };
 
 /// Declared cost of a fragment shader for one quad.

@@ -1,6 +1,8 @@
 #include "pipeline/machine.hpp"
 
 #include "pipeline/functional/colour_format.hpp"
+#include "pipeline/functional/composite.hpp"
+#include "pipeline/functional/screen_stream.hpp"
 #include "pipeline/functional/shader.hpp"
 #include "pipeline/machine_units.hpp"
 
@@ -20,7 +22,7 @@ Machine::Machine(const GpuParams& gpu, const Frame& frame, std::span<const Fragm
         if (const std::string reason = design.refuses(*frame.program); !reason.empty())
             throw sim::InputError(
                 fmt::format("design {}: cannot run program {}: {}", design.id(), frame.program->id(), reason));
-        plan_ = design.plan(*frame.program, frame.view);
+        plan_ = design.plan(*frame.program, frame.view_of_kbuffer());
     } else {
         plan_.site = UpdateSite::passes;
     }
@@ -37,7 +39,7 @@ void Machine::build() {
     PassContext& pass = units.pass;
     pass.frame = frame_;
     pass.program = frame_->program.get();
-    pass.layout = {frame_->view.width, frame_->view.height, gpu_.memory.partitions};
+    pass.layout = layout_of(frame_->view_of_kbuffer());
     pass.peel = plan_.passes;
     pass.textures = frame_->needs.textures;
     if (!streams_.empty()) pass.stream = &streams_[0];
@@ -79,9 +81,14 @@ void Machine::build() {
                                units.lists ? &*units.lists : nullptr};
     for (std::uint32_t rop = 0; rop < partitions; ++rop)
         units.rops.emplace_back(context(fmt::format("rop{}", rop)), gpu_.rop, pass, plan_, surfaces,
-                                RopShape{gpu_.fragment.pipes, frame_->draws.size(),
+                                RopShape{gpu_.fragment.pipes, most_tiles(), frame_->draws.size(),
                                          uses_depth() || options_.build_everything,
                                          uses_colour() || options_.build_everything, kbuffer_tiles()});
+}
+
+// Full-screen passes draw onto the picture or onto surfaces that are no larger than the k-buffer's.
+std::uint32_t Machine::most_tiles() const {
+    return std::max(layout_of(frame_->view).tiles(), layout_of(frame_->view_of_kbuffer()).tiles());
 }
 
 // Tile memory holds every tile of the partition; partitions own tiles in turn, row by row.
@@ -156,7 +163,7 @@ void Machine::link() {
     }
 }
 
-bool Machine::pass_reads_textures() const { return frame_->needs.textures || peels(); }
+bool Machine::pass_reads_textures() const { return frame_->needs.textures || peels() || frame_->screen_draw; }
 
 bool Machine::peels() const { return frame_->needs.kbuffer && plan_.site == UpdateSite::passes; }
 
@@ -181,7 +188,8 @@ bool Machine::uses_colour() const {
 std::uint64_t Machine::total_quads(const Frame& frame, std::span<const FragmentStream> streams,
                                    const KBufferDesign& design) {
     const std::uint32_t passes =
-        frame.program != nullptr ? geometry_passes(design.plan(*frame.program, frame.view), *frame.program) : 1;
+        frame.program != nullptr ? geometry_passes(design.plan(*frame.program, frame.view_of_kbuffer()), *frame.program)
+                                 : 1;
     std::uint64_t quads = 0;
     std::size_t next = 0;
     for (const Pass& pass : frame.passes) {
@@ -192,18 +200,19 @@ std::uint64_t Machine::total_quads(const Frame& frame, std::span<const FragmentS
 }
 
 // The shader's cost depends on what the pass asks of it: depth-only entries need no colour.
-void Machine::set_costs() {
+void Machine::set_costs(const Needs& needs) {
     std::vector<ShaderCost>& costs = units_->pass.shader_costs;
     costs.resize(frame_->draws.size());
     std::uint32_t registers = 1;
     for (std::size_t draw = 0; draw < costs.size(); ++draw) {
         const Draw& call = frame_->draws[draw];
         costs[draw] = shader_cost(frame_->resources->materials[call.material],
-                                  frame_->resources->geometries[call.geometry], frame_->needs);
+                                  frame_->resources->geometries[call.geometry], needs);
         registers = std::max(registers, costs[draw].registers);
     }
     // A shader that reads and writes the k-buffer keeps all render targets in registers.
     if (units_->pass.end == FragmentEnd::kbuffer_store) registers += frame_->program->targets();
+    if (units_->pass.screen != nullptr) registers = units_->pass.screen->registers;
     for (FragmentPipeline& pipe : units_->pipes) pipe.begin_pass(registers);
 }
 
@@ -224,14 +233,15 @@ void Machine::stream_surface(std::uint64_t read_bytes, std::uint64_t write_bytes
     units_->simulation.run(options_.stop);
 }
 
-void Machine::run_draw(const FragmentStream& stream) {
+void Machine::run_draw(const FragmentStream& stream, const Needs& needs) {
     Units& units = *units_;
     units.pass.stream = &stream;
     for (Rop& rop : units.rops) rop.begin_pass();
     units.scheduler->begin_pass();
     if (units.locks) units.locks->begin_pass();
     if (units.early_depth) units.early_depth->begin_pass();
-    set_costs();
+    set_costs(needs);
+    units.front.read(needs);
     units.front.start(stream, frame_->draws);
     units.simulation.run(options_.stop);
     for (Rop& rop : units.rops) rop.write_back_all();
@@ -240,7 +250,7 @@ void Machine::run_draw(const FragmentStream& stream) {
 
 void Machine::clear(const Pass& pass) {
     begin(pass.name);
-    const std::size_t pixels = std::size_t{frame_->view.width} * frame_->view.height;
+    const std::size_t pixels = frame_->view.pixels(), kbuffer_pixels = frame_->view_of_kbuffer().pixels();
     std::uint64_t bytes = 0;
     for (const std::string& surface : pass.writes) {
         if (surface == "depth") {
@@ -252,9 +262,9 @@ void Machine::clear(const Pass& pass) {
             bytes += pixels * colour_bytes(frame_->colour_format);
         }
         // Peeling clears its layers one by one instead, lists their heads.
-        if (surface == "kbuffer" && units_->lists) bytes += pixels * plan_.lists.head_bytes;
+        if (surface == "kbuffer" && units_->lists) bytes += kbuffer_pixels * plan_.lists.head_bytes;
         if (surface == "kbuffer" && units_->kbuffer && !plan_.shader.tile_memory)
-            bytes += pixels * frame_->program->bytes_per_pixel();
+            bytes += kbuffer_pixels * frame_->program->bytes_per_pixel();
     }
     if (!gpu_.rop.fast_clear && bytes != 0) stream_surface(0, bytes);
     end();
@@ -263,14 +273,15 @@ void Machine::clear(const Pass& pass) {
 void Machine::draw(const Pass& pass, const FragmentStream& stream) {
     PassContext& context = units_->pass;
     FixedSurfaces& fixed = units_->fixed;
-    const std::size_t pixels = std::size_t{frame_->view.width} * frame_->view.height;
+    const std::size_t pixels = frame_->view.pixels();
+    context.layout = layout_of(frame_->view_of(pass));
     fixed.winner.resize(pixels, ~QuadId{0});
     if (pass.depth.test || pass.depth.write) fixed.depth.resize(pixels, farthest_depth(frame_->depth_format));
     if (pass.colour) fixed.colour.resize(pixels, through_format(frame_->colour_format, frame_->background));
     context.depth = pass.depth;
     context.blend = pass.blend;
     context.colour_write = pass.colour;
-    context.colour_bytes = colour_bytes(frame_->colour_format);
+    context.colour_bytes = colour_bytes(frame_->colour_format) * pass.colour_targets;
     context.depth_format = frame_->depth_format;
     context.read_only_format = frame_->depth_format;
     context.depth_bytes = depth_bytes(frame_->depth_format);
@@ -279,7 +290,7 @@ void Machine::draw(const Pass& pass, const FragmentStream& stream) {
         context.end = FragmentEnd::depth_colour;
         context.read_only_depth = nullptr;
         begin(pass.name);
-        run_draw(stream);
+        run_draw(stream, frame_->needs_of(pass));
         end();
         return;
     }
@@ -289,8 +300,39 @@ void Machine::draw(const Pass& pass, const FragmentStream& stream) {
     context.read_only_depth = pass.depth.test ? &fixed.depth : nullptr;
     context.end = plan_.site == UpdateSite::blender ? FragmentEnd::kbuffer_blend : FragmentEnd::kbuffer_store;
     begin(pass.name);
-    run_draw(stream);
+    run_draw(stream, frame_->needs_of(pass));
     end();
+}
+
+// What computes the picture, where the workload says how.
+void Machine::resolve() {
+    if (!frame_->screen_draw || !frame_->resolve) return;
+    const std::vector<float> kbuffer = kbuffer_image(), colour = colour_surface(), depth = depth_surface();
+    const auto passes = with_drained(*frame_, {kbuffer, colour, depth}, [this](const FinishedSurfaces& surfaces) {
+        return frame_->resolve->screen_passes(*frame_, surfaces);
+    });
+    for (const ScreenPass& pass : passes) screen(pass);
+}
+
+void Machine::screen(const ScreenPass& pass) {
+    PassContext& context = units_->pass;
+    const FragmentStream stream = screen_stream(pass.width, pass.height, *frame_->screen_draw);
+    CHECK(layout_of(pass.width, pass.height).tiles() <= most_tiles());
+    units_->drawn = std::exchange(units_->fixed, {});
+    units_->fixed.winner.assign(std::size_t{pass.width} * pass.height, ~QuadId{0});
+    context.layout = layout_of(pass.width, pass.height);
+    context.end = FragmentEnd::depth_colour;
+    context.depth = {};
+    context.read_only_depth = nullptr;
+    context.blend = BlendMode::replace;
+    context.colour_write = true; // its values are the workload's
+    context.colour_bytes = pass.written_bytes;
+    context.screen = &pass;
+    begin(pass.name);
+    run_draw(stream, {});
+    end();
+    context.screen = nullptr;
+    units_->fixed = std::move(units_->drawn);
 }
 
 RunResult Machine::run(const ReferenceImage& reference) {
@@ -305,9 +347,11 @@ RunResult Machine::run(const ReferenceImage& reference) {
             draw(pass, streams_[next++]);
             break;
         case PassKind::resolve:
-            break; // not timed
+            resolve();
+            break;
         }
     }
+    units_->pass.layout = layout_of(frame_->view_of_kbuffer());
     result.design = design_->id();
     result.core_mhz = gpu_.clock.core_mhz;
     result.cycles = units_->cycle();

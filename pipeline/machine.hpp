@@ -54,6 +54,8 @@ class Machine {
     void end();
     void clear(const Pass& pass);
     void draw(const Pass& pass, const FragmentStream& stream);
+    void resolve();
+    void screen(const ScreenPass& pass);
     void draw_layers(const Pass& pass, const FragmentStream& stream);
     void clear_layers();
     void keep_both_ends(std::size_t pixel, const std::vector<PeeledLayer>& near_layers,
@@ -69,11 +71,20 @@ class Machine {
     bool locks() const;
     bool rejects_early() const;
     std::uint32_t kbuffer_tiles() const; ///< of one partition's cache
-    void run_draw(const FragmentStream& stream);
+    void run_draw(const FragmentStream& stream, const Needs& needs);
     void stream_surface(std::uint64_t read_bytes, std::uint64_t write_bytes);
-    void set_costs();
+    void set_costs(const Needs& needs);
+    SurfaceLayout layout_of(std::uint32_t width, std::uint32_t height) const {
+        return {width, height, gpu_.memory.partitions};
+    }
+    SurfaceLayout layout_of(const View& view) const { return layout_of(view.width, view.height); }
+    std::uint32_t most_tiles() const; ///< of a surface that a pass draws onto
+    std::vector<float> kbuffer_image() const;
+    std::vector<float> depth_surface() const;
     void list_units(RunResult& result) const;
     void collect_pixels(RunResult& result, const ReferenceImage& reference) const;
+    /// Where colour or depth differ from the reference: 1.
+    std::vector<std::uint8_t> wrong_fixed_pixels(const RunResult& result, const ReferenceImage& reference) const;
     bool explained(std::size_t pixel) const; ///< a hazard happened here
     void collect_hazards(RunResult& result) const;
     void collect_counters(RunResult& result) const;

@@ -19,7 +19,7 @@ std::uint32_t Machine::geometry_passes(const KBufferPlan& plan, const ModifyProg
 void Machine::draw_layers(const Pass& pass, const FragmentStream& stream) {
     PassContext& context = units_->pass;
     const ModifyProgram& program = *frame_->program;
-    const std::size_t pixels = std::size_t{frame_->view.width} * frame_->view.height;
+    const std::size_t pixels = frame_->view_of_kbuffer().pixels();
     const bool both_ends = plan_.passes.capture == PassCapture::nearest_farthest;
     units_->drawn = std::exchange(units_->fixed, {});
     context.read_only_depth = pass.depth.test ? &units_->drawn.depth : nullptr;
@@ -53,7 +53,7 @@ void Machine::draw_layers(const Pass& pass, const FragmentStream& stream) {
             context.behind = &near_layers.back();
             context.before = both_ends ? &far_layers.back() : nullptr;
         }
-        run_draw(stream);
+        run_draw(stream, frame_->needs_of(pass));
         if (both_ends) {
             near_layers.push_back({units_->fixed.depth, units_->fixed.winner});
             far_layers.push_back({units_->fixed.far_depth, units_->fixed.far_winner});
@@ -77,7 +77,7 @@ void Machine::draw_layers(const Pass& pass, const FragmentStream& stream) {
 void Machine::clear_layers() {
     const ModifyProgram& program = *frame_->program;
     const std::size_t floats = program.floats_per_pixel();
-    layers_.resize(std::size_t{frame_->view.width} * frame_->view.height * floats);
+    layers_.resize(frame_->view_of_kbuffer().pixels() * floats);
     for (std::size_t at = 0; at < layers_.size(); at += floats) program.clear(layers_.data() + at);
 }
 
@@ -101,7 +101,7 @@ void Machine::keep_entry(std::size_t pixel, std::uint32_t entry, QuadId id, cons
     if (id == ~QuadId{0}) return;
     const ModifyProgram& program = *frame_->program;
     const Quad& quad = stream.quads[id];
-    const std::size_t x = pixel % frame_->view.width, y = pixel / frame_->view.width;
+    const std::size_t width = frame_->view_of_kbuffer().width, x = pixel % width, y = pixel / width;
     program.make_entry(stream.fragment(id, (y - quad.y) * 2 + (x - quad.x)),
                        layers_.data() + pixel * program.floats_per_pixel() +
                            std::size_t{entry} * program.floats_per_entry());
@@ -112,14 +112,14 @@ void Machine::keep_entry(std::size_t pixel, std::uint32_t entry, QuadId id, cons
 void Machine::draw_lists(const Pass& pass, const FragmentStream& stream) {
     PassContext& context = units_->pass;
     const ListsSite& site = plan_.lists;
-    const std::size_t pixels = std::size_t{frame_->view.width} * frame_->view.height;
+    const std::size_t pixels = frame_->view_of_kbuffer().pixels();
     context.read_only_depth = pass.depth.test ? &units_->fixed.depth : nullptr;
     context.end = FragmentEnd::kbuffer_list;
     for (std::uint32_t i = 0; i < site.passes; ++i) {
         begin(site.passes == 1 ? pass.name : fmt::format("{} pass {}", pass.name, i));
         context.first_kept = i * site.per_pixel;
         if (i > 0) stream_surface(0, pixels * site.head_bytes);
-        run_draw(stream);
+        run_draw(stream, frame_->needs_of(pass));
         end();
     }
     begin(pass.name + " sort");
@@ -151,8 +151,8 @@ std::uint64_t Machine::run_lists(const FragmentStream& stream) {
 // Whether more fragments came to a pixel than the design can hold; what it shows there is not meant to be right.
 bool Machine::overflowed(std::size_t pixel, std::uint32_t fragments) const {
     if (!frame_->needs.kbuffer) return false;
-    const auto x = static_cast<std::uint32_t>(pixel % frame_->view.width),
-               y = static_cast<std::uint32_t>(pixel / frame_->view.width);
+    const std::size_t width = frame_->view_of_kbuffer().width;
+    const auto x = static_cast<std::uint32_t>(pixel % width), y = static_cast<std::uint32_t>(pixel / width);
     if (units_->lists) {
         const ListsSite& site = plan_.lists;
         return units_->lists->overflowed(units_->pass.layout.block_of(x, y), y % 2 * 2 + x % 2) ||

@@ -77,7 +77,7 @@ void Machine::list_units(RunResult& result) const {
         part(true, unit, {});
     part(units.front.has_index_fetch(), "index fetch", "no draw is indexed");
     part(units.early_depth.has_value(), "early depth test", "no pass tests a depth surface that it does not write");
-    part(textures_linked_, "texture path to memory", "no texture and no peeled layer is read");
+    part(textures_linked_, "texture path to memory", "no texture, no peeled layer and no full-screen pass is read");
     part(plan_.scheduling.guard != nullptr, "dispatch guard and side buffer",
          because("the design lets every quad into the pipes"));
     part(units.locks.has_value(), "lock table", because("the design's shaders have no critical section"));
@@ -101,29 +101,29 @@ void Machine::list_units(RunResult& result) const {
 }
 
 void Machine::collect_pixels(RunResult& result, const ReferenceImage& reference) const {
-    const Units& units = *units_;
     std::vector<std::uint8_t> tied;
     if (frame_->needs.kbuffer) {
-        result.kbuffer = units.kbuffer ? units.kbuffer->image() : layers_;
+        result.kbuffer = kbuffer_image();
         KBufferDifference difference = compare_kbuffers(*frame_->program, result.kbuffer, reference.kbuffer);
         result.wrong_mask = std::move(difference.wrong);
         result.lost_fragments = difference.lost_fragments;
         tied = std::move(difference.tied);
         result.layers = std::move(difference.layers);
     }
-    result.wrong_mask.resize(std::size_t{frame_->view.width} * frame_->view.height);
-    if (frame_->needs.colour_surface) {
-        result.colour = colour_surface();
-        CHECK(result.colour.size() == reference.colour.size());
-        for (std::size_t at = 0; at < result.colour.size(); ++at)
-            if (std::bit_cast<std::uint32_t>(result.colour[at]) != std::bit_cast<std::uint32_t>(reference.colour[at]))
-                result.wrong_mask[at / 4] = 1;
+    const std::size_t pixels = frame_->view_of_kbuffer().pixels();
+    result.wrong_mask.resize(pixels);
+    if (frame_->needs.colour_surface) result.colour = colour_surface();
+    if (frame_->needs.depth) result.depth = depth_surface();
+    std::vector<std::uint8_t> seen = wrong_fixed_pixels(result, reference);
+    const auto count = [](const auto& mask) {
+        return static_cast<std::uint64_t>(std::count(mask.begin(), mask.end(), 1));
+    };
+    if (frame_->kbuffer_view) { // surfaces of other pixels, which nothing explains
+        result.wrong_pixels = result.unexplained_pixels = count(seen);
+    } else {
+        for (std::size_t pixel = 0; pixel < pixels; ++pixel) result.wrong_mask[pixel] |= seen[pixel];
     }
-    if (frame_->needs.depth && !units.fixed.depth.empty())
-        for (std::size_t pixel = 0; pixel < reference.depth.size(); ++pixel)
-            if (depth_value(frame_->depth_format, units.fixed.depth[pixel]) != reference.depth[pixel])
-                result.wrong_mask[pixel] = 1;
-    result.wrong_pixels = static_cast<std::uint64_t>(std::count(result.wrong_mask.begin(), result.wrong_mask.end(), 1));
+    result.wrong_pixels += count(result.wrong_mask);
     for (std::size_t pixel = 0; frame_->needs.kbuffer && pixel < result.wrong_mask.size(); ++pixel) {
         const bool overflow = overflowed(pixel, reference.depth_complexity[pixel]);
         result.overflow_pixels += overflow ? 1 : 0;
@@ -133,10 +133,32 @@ void Machine::collect_pixels(RunResult& result, const ReferenceImage& reference)
     }
 }
 
+std::vector<std::uint8_t> Machine::wrong_fixed_pixels(const RunResult& result, const ReferenceImage& reference) const {
+    std::vector<std::uint8_t> wrong(frame_->view.pixels());
+    if (frame_->needs.colour_surface) {
+        CHECK(result.colour.size() == reference.colour.size());
+        for (std::size_t at = 0; at < result.colour.size(); ++at)
+            if (std::bit_cast<std::uint32_t>(result.colour[at]) != std::bit_cast<std::uint32_t>(reference.colour[at]))
+                wrong[at / 4] = 1;
+    }
+    for (std::size_t pixel = 0; pixel < result.depth.size() && pixel < reference.depth.size(); ++pixel)
+        if (result.depth[pixel] != reference.depth[pixel]) wrong[pixel] = 1;
+    return wrong;
+}
+
 bool Machine::explained(std::size_t pixel) const {
-    const auto x = static_cast<std::uint32_t>(pixel % frame_->view.width),
-               y = static_cast<std::uint32_t>(pixel / frame_->view.width);
+    const std::size_t width = frame_->view_of_kbuffer().width;
+    const auto x = static_cast<std::uint32_t>(pixel % width), y = static_cast<std::uint32_t>(pixel / width);
     return units_->kbuffer && units_->history->classes(units_->pass.layout.block_of(x, y), y % 2 * 2 + x % 2) != 0;
+}
+
+std::vector<float> Machine::kbuffer_image() const { return units_->kbuffer ? units_->kbuffer->image() : layers_; }
+
+std::vector<float> Machine::depth_surface() const {
+    std::vector<float> depths;
+    depths.reserve(units_->fixed.depth.size());
+    for (const DepthCode code : units_->fixed.depth) depths.push_back(depth_value(frame_->depth_format, code));
+    return depths;
 }
 
 std::vector<float> Machine::colour_surface() const {
@@ -226,7 +248,8 @@ void Machine::collect_counters(RunResult& result) const {
                 link_report(stats.memory.bytes[client], result.fragments);
     result.bytes["crossbar"] = link_report(stats.crossbar.bytes, result.fragments);
 
-    if (frame_->program != nullptr) result.area = design_->area(*frame_->program, frame_->view, gpu_.reorder_quads());
+    if (frame_->program != nullptr)
+        result.area = design_->area(*frame_->program, frame_->view_of_kbuffer(), gpu_.reorder_quads());
     for (std::uint32_t draw = 0; draw < frame_->draws.size(); ++draw) collect_draw(result, draw);
 }
 

@@ -20,6 +20,12 @@ struct Surfaces {
     std::vector<float> kbuffer;
     std::vector<DepthCode> depth;
     std::vector<float> colour;
+
+    std::vector<float> depth_values(DepthFormat format) const {
+        std::vector<float> values(depth.size());
+        for (std::size_t i = 0; i < values.size(); ++i) values[i] = depth_value(format, depth[i]);
+        return values;
+    }
 };
 
 /// Sums over all fragments of the k-buffer passes.
@@ -152,11 +158,7 @@ class PassRunner {
 class Reference {
   public:
     Reference(const Frame& frame, std::span<const FragmentStream> streams, QuadId delay, unsigned threads)
-        : frame_(frame),
-          streams_(streams),
-          delay_(delay),
-          threads_(threads),
-          pixels_(std::size_t{frame.view.width} * frame.view.height) {
+        : frame_(frame), streams_(streams), delay_(delay), threads_(threads) {
         allocate();
         for (const Pass& pass : frame.passes) run(pass);
         finish();
@@ -167,12 +169,13 @@ class Reference {
   private:
     void allocate() {
         const auto any = [&](auto member) { return std::any_of(frame_.passes.begin(), frame_.passes.end(), member); };
-        image_.depth_complexity.resize(pixels_);
-        if (any([](const Pass& pass) { return pass.depth.test || pass.depth.write; })) surfaces_.depth.resize(pixels_);
-        if (any([](const Pass& pass) { return pass.colour; })) surfaces_.colour.resize(pixels_ * 4);
+        image_.depth_complexity.resize(frame_.view_of_kbuffer().pixels());
+        if (any([](const Pass& pass) { return pass.depth.test || pass.depth.write; }))
+            surfaces_.depth.resize(frame_.view.pixels());
+        if (any([](const Pass& pass) { return pass.colour; })) surfaces_.colour.resize(frame_.view.pixels() * 4);
         if (any([](const Pass& pass) { return pass.kbuffer; })) {
             CHECK(frame_.program != nullptr);
-            surfaces_.kbuffer.resize(pixels_ * frame_.program->floats_per_pixel());
+            surfaces_.kbuffer.resize(frame_.view_of_kbuffer().pixels() * frame_.program->floats_per_pixel());
         }
         for (const char* surface : {"depth", "colour", "kbuffer"}) clear(surface);
     }
@@ -186,7 +189,8 @@ class Reference {
                 surfaces_.colour[i] = colour[static_cast<int>(i % 4)];
         } else if (surface == "kbuffer" && !surfaces_.kbuffer.empty()) {
             const std::size_t floats = frame_.program->floats_per_pixel();
-            for (std::size_t i = 0; i < pixels_; ++i) frame_.program->clear(surfaces_.kbuffer.data() + i * floats);
+            for (std::size_t at = 0; at < surfaces_.kbuffer.size(); at += floats)
+                frame_.program->clear(surfaces_.kbuffer.data() + at);
         }
     }
 
@@ -199,7 +203,9 @@ class Reference {
             draw(pass);
             break;
         case PassKind::resolve:
-            if (!surfaces_.kbuffer.empty()) image_.picture = composite(frame_, surfaces_.kbuffer, surfaces_.colour);
+            if (!surfaces_.kbuffer.empty())
+                image_.picture = composite(
+                    frame_, {surfaces_.kbuffer, surfaces_.colour, surfaces_.depth_values(frame_.depth_format)});
             break;
         }
     }
@@ -207,7 +213,10 @@ class Reference {
     void draw(const Pass& pass) {
         CHECK(next_stream_ < streams_.size());
         const FragmentStream& stream = streams_[next_stream_++];
-        CHECK(stream.width == frame_.view.width && stream.height == frame_.view.height);
+        const View& view = frame_.view_of(pass);
+        CHECK(stream.width == view.width && stream.height == view.height);
+        // A k-buffer that a light sees is not tested against what the eye sees.
+        CHECK(!(pass.kbuffer && frame_.kbuffer_view) || !(pass.depth.test || pass.depth.write || pass.colour));
         CHECK(!pass.colour || stream.colours.size() == stream.quads.size());
         const TileLists tiles(stream);
         parallel_for(threads_, tiles.count(), [&](std::size_t tile) {
@@ -223,9 +232,7 @@ class Reference {
         CHECK(next_stream_ == streams_.size());
         image_.kbuffer = std::move(surfaces_.kbuffer);
         image_.colour = std::move(surfaces_.colour);
-        image_.depth.resize(surfaces_.depth.size());
-        for (std::size_t i = 0; i < image_.depth.size(); ++i)
-            image_.depth[i] = depth_value(frame_.depth_format, surfaces_.depth[i]);
+        image_.depth = surfaces_.depth_values(frame_.depth_format);
         image_.accepted_insertions = counts_.accepted;
         image_.missed_reads = counts_.missed_reads;
         image_.missed_pixels = counts_.missed_pixels;
@@ -235,7 +242,6 @@ class Reference {
     std::span<const FragmentStream> streams_;
     QuadId delay_;
     unsigned threads_;
-    std::size_t pixels_;
     std::size_t next_stream_ = 0;
     Surfaces surfaces_;
     ReferenceImage image_;

@@ -53,9 +53,10 @@ struct RunResult {
     std::uint64_t lost_fragments = 0; ///< entries of the reference that no layer of the run holds
     std::vector<LayerErrors> layers;
 
-    // Per pixel, row 0 first, width * height entries.
+    // Per pixel, row 0 first; k-buffer and masks of the view of the k-buffer, colour and depth of the frame's view.
     std::vector<float> kbuffer;            ///< floats_per_pixel floats each; empty when the frame has no k-buffer
     std::vector<float> colour;             ///< RGBA of the "colour" surface; empty when the frame has none
+    std::vector<float> depth;              ///< window depths of the "depth" surface; empty when the frame has none
     std::vector<std::uint8_t> hazard_mask; ///< bit i: hazard class i happened here; empty when there was none
     std::vector<std::uint8_t> wrong_mask;  ///< 1 where the pixel differs from the reference
 

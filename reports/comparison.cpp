@@ -97,8 +97,10 @@ void check_designs(ComparisonInput& input, bool only_able) {
 // A frame that cannot fit would be ended by the system without a word.
 void check_memory(const ComparisonInput& input, const ComparisonRequest& request) {
     const pipeline::Frame& frame = *input.frame;
-    const double pixels = static_cast<double>(frame.view.width) * frame.view.height;
-    const double kbuffer = frame.program ? frame.program->bytes_per_pixel() : 0;
+    const auto pixels = static_cast<double>(frame.view.pixels());
+    const double kbuffer = frame.program ? static_cast<double>(frame.program->bytes_per_pixel()) *
+                                               static_cast<double>(frame.view_of_kbuffer().pixels()) / pixels
+                                         : 0;
     constexpr double colour = 16, depth = 12;
     // One k-buffer, colour and depth surface for the reference and each design; those that run also hold older
     // versions.
@@ -136,10 +138,13 @@ std::shared_ptr<const SubmittedFrame> submit(const ComparisonInput& input, const
     return result;
 }
 
-FramePixels pixels_of(const pipeline::Frame& frame, std::vector<float> kbuffer, const std::vector<float>& colour) {
+FramePixels pixels_of(const pipeline::Frame& frame, std::vector<float> kbuffer, std::vector<float> colour,
+                      std::vector<float> depth) {
     FramePixels pixels;
-    pixels.composite = kbuffer.empty() ? colour : pipeline::composite(frame, kbuffer, colour);
+    pixels.composite = kbuffer.empty() ? colour : pipeline::composite(frame, {kbuffer, colour, depth});
     pixels.kbuffer = std::move(kbuffer);
+    pixels.colour = std::move(colour);
+    pixels.depth = std::move(depth);
     return pixels;
 }
 
@@ -214,10 +219,11 @@ Comparison compare(ComparisonInput input, const Supervision& supervision) {
     comparison.pixels.resize(input.designs.size());
     pipeline::parallel_for(input.threads, input.designs.size(), [&](std::size_t i) {
         comparison.runs[i] = run_design(input, i, supervision);
-        comparison.pixels[i] =
-            pixels_of(*input.frame, std::move(comparison.runs[i].kbuffer), comparison.runs[i].colour);
+        comparison.pixels[i] = pixels_of(*input.frame, std::move(comparison.runs[i].kbuffer),
+                                         std::move(comparison.runs[i].colour), std::move(comparison.runs[i].depth));
     });
-    comparison.reference = pixels_of(*input.frame, std::move(input.reference.kbuffer), input.reference.colour);
+    comparison.reference = pixels_of(*input.frame, std::move(input.reference.kbuffer),
+                                     std::move(input.reference.colour), std::move(input.reference.depth));
     comparison.depth_complexity = std::move(input.reference.depth_complexity);
     comparison.scene = std::move(input.scene);
     comparison.gpu = std::move(input.gpu);

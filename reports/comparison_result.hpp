@@ -30,6 +30,8 @@ struct SceneFacts {
 struct FramePixels {
     std::vector<float> kbuffer;   ///< floats_per_pixel of the program for each pixel; empty without a k-buffer
     std::vector<float> composite; ///< linear RGBA of the finished picture for each pixel; empty when no pass makes one
+    std::vector<float> colour;    ///< RGBA of the "colour" surface; empty when the frame has none
+    std::vector<float> depth;     ///< window depths of the "depth" surface, likewise
 };
 
 struct GpuFacts {
@@ -52,9 +54,10 @@ struct Comparison {
     GpuFacts gpu;
     std::shared_ptr<const pipeline::Frame> frame;
     std::uint64_t seed = 1;
-    FramePixels reference;                                 ///< in submission order, without time
-    std::vector<std::uint32_t> depth_complexity;           ///< fragments drawn onto each pixel in one geometry pass
-    std::vector<pipeline::RunResult> runs;                 ///< in the order in which the designs were asked for
+    FramePixels reference; ///< in submission order, without time
+    std::vector<std::uint32_t>
+        depth_complexity;                  ///< fragments drawn onto each pixel of the k-buffer in one geometry pass
+    std::vector<pipeline::RunResult> runs; ///< in the order in which the designs were asked for
     std::vector<nlohmann::ordered_json> design_parameters; ///< of each run
     std::vector<nlohmann::ordered_json> design_support;    ///< what it can be used for, of each run
     std::vector<FramePixels> pixels;                       ///< of each run
@@ -62,6 +65,8 @@ struct Comparison {
 
     std::uint32_t width() const { return frame->view.width; }
     std::uint32_t height() const { return frame->view.height; }
+    /// The k-buffer, hazards and fragments per pixel are those of another view than the picture.
+    bool has_light_view() const { return frame->kbuffer_view.has_value(); }
 };
 
 } // namespace reports

@@ -1,5 +1,6 @@
 #include "reports/picture_files.hpp"
 
+#include "pipeline/functional/composite.hpp"
 #include "pipeline/functional/parallel.hpp"
 #include "reports/atomic_file.hpp"
 #include "reports/pictures.hpp"
@@ -19,18 +20,21 @@ namespace {
 class PictureWriter {
   public:
     PictureWriter(const Comparison& comparison, fs::path directory)
-        : comparison_(comparison), directory_(std::move(directory)), size_{comparison.width(), comparison.height()} {
+        : comparison_(comparison),
+          directory_(std::move(directory)),
+          size_{comparison.width(), comparison.height()},
+          stored_{comparison.frame->view_of_kbuffer().width, comparison.frame->view_of_kbuffer().height} {
         if (!comparison.frame->program) return;
         layout_.emplace(*comparison.frame->program);
-        range_ = depth_range(*layout_, comparison.reference.kbuffer, size_.pixels());
+        range_ = depth_range(*layout_, comparison.reference.kbuffer, stored_.pixels());
     }
 
     void add_overlap() {
         add_png("overlap.png", "", "fragments per pixel",
-                [this] { return overlap_picture(size_, comparison_.depth_complexity); });
+                [this] { return overlap_picture(stored_, comparison_.depth_complexity); });
         add_exr("overlap.exr", [this] {
             const auto& counts = comparison_.depth_complexity;
-            return Measurement{size_.width, size_.height, {"fragments"}, {counts.begin(), counts.end()}};
+            return Measurement{stored_.width, stored_.height, {"fragments"}, {counts.begin(), counts.end()}};
         });
     }
 
@@ -46,7 +50,7 @@ class PictureWriter {
         if (!layout_ || pixels.kbuffer.empty()) return;
         for (std::uint32_t layer = 0; layer < layout_->layers(); ++layer) {
             add_png(fs::path(subject) / fmt::format("layer{}.png", layer), subject, fmt::format("layer {}", layer),
-                    [this, &pixels, layer] { return layer_picture(size_, *layout_, pixels.kbuffer, layer, range_); });
+                    [this, &pixels, layer] { return layer_picture(stored_, *layout_, pixels.kbuffer, layer, range_); });
             files_.back().layer = true;
         }
         add_exr(fs::path(subject) / "layers.exr", [this, &pixels] { return layers_measurement(pixels.kbuffer); });
@@ -54,7 +58,8 @@ class PictureWriter {
 
     void add_hazards(const pipeline::RunResult& run, const FramePixels& pixels) {
         add_png(fs::path(run.design) / "hazards.png", run.design, "hazards", [this, &run, &pixels] {
-            return hazard_picture(size_, pixels.composite, run.hazard_mask, run.hazards, run.design);
+            return hazard_picture(stored_, comparison_.has_light_view() ? first_layer(pixels) : pixels.composite,
+                                  run.hazard_mask, run.hazards, run.design);
         });
     }
 
@@ -62,9 +67,28 @@ class PictureWriter {
         const std::string name = fmt::format("difference_x{}.png", factor);
         add_png(fs::path(run.design) / name, run.design, fmt::format("difference to the reference x {}", factor),
                 [this, &run, &pixels, factor] {
-                    return difference_picture(size_, pixels.composite, comparison_.reference.composite, run.wrong_mask,
-                                              factor, run.design);
+                    const std::vector<std::uint8_t> none;
+                    return difference_picture(size_, pixels.composite, comparison_.reference.composite,
+                                              comparison_.has_light_view() ? none : run.wrong_mask, factor, run.design);
                 });
+    }
+
+    /// What the workload shows on the way to its picture.
+    void add_steps(const std::string& subject, const FramePixels& pixels) {
+        const pipeline::Frame& frame = *comparison_.frame;
+        if (!layout_ || !frame.resolve) return;
+        auto images = pipeline::with_drained(frame, {pixels.kbuffer, pixels.colour, pixels.depth},
+                                             [&](const pipeline::FinishedSurfaces& surfaces) {
+                                                 return frame.resolve->images(frame, surfaces, pixels.composite);
+                                             });
+        for (pipeline::ResolveImage& image : images) {
+            const auto step = std::make_shared<const pipeline::ResolveImage>(std::move(image));
+            add_png(fs::path(subject) / (step->name + ".png"), subject, step->title,
+                    [step] { return value_picture(*step); });
+            add_exr(fs::path(subject) / (step->name + ".exr"), [step] {
+                return Measurement{step->width, step->height, {"value"}, step->values};
+            });
+        }
     }
 
     std::uint32_t difference_factor() const {
@@ -93,17 +117,28 @@ class PictureWriter {
     }
 
     Measurement layers_measurement(std::span<const float> kbuffer) const {
-        Measurement result{size_.width, size_.height, {}, {}};
+        Measurement result{stored_.width, stored_.height, {}, {}};
         for (std::uint32_t layer = 0; layer < layout_->layers(); ++layer)
             for (std::uint32_t slot = 0; slot < layout_->entry_floats(); ++slot)
                 result.channels.push_back(fmt::format("layer{}.{}", layer, channel_name(slot)));
-        result.values.reserve(size_.pixels() * result.channels.size());
-        for (std::size_t pixel = 0; pixel < size_.pixels(); ++pixel)
+        result.values.reserve(stored_.pixels() * result.channels.size());
+        for (std::size_t pixel = 0; pixel < stored_.pixels(); ++pixel)
             for (std::uint32_t layer = 0; layer < layout_->layers(); ++layer) {
                 const auto entry = layout_->entry(kbuffer, pixel, layer);
                 result.values.insert(result.values.end(), entry.begin(), entry.end());
             }
         return result;
+    }
+
+    /// Grey, brighter where the first layer is nearer: behind hazards that no picture lies behind.
+    std::vector<float> first_layer(const FramePixels& pixels) const {
+        std::vector<float> rgba(4 * stored_.pixels());
+        const float extent = std::max(range_.far - range_.near, 1e-30F);
+        for (std::size_t pixel = 0; pixel < stored_.pixels(); ++pixel)
+            if (!layout_->is_empty(pixels.kbuffer, pixel, 0))
+                std::fill_n(&rgba[4 * pixel], 4,
+                            1.0F - 0.8F * (layout_->depth(pixels.kbuffer, pixel, 0) - range_.near) / extent);
+        return rgba;
     }
 
     std::string channel_name(std::uint32_t slot) const {
@@ -114,7 +149,8 @@ class PictureWriter {
 
     const Comparison& comparison_;
     fs::path directory_;
-    Size size_;
+    Size size_;   ///< of the picture
+    Size stored_; ///< of the k-buffer
     std::optional<KBufferLayout> layout_;
     DepthRange range_;
     std::vector<PictureFile> files_;
@@ -133,7 +169,8 @@ void remove_earlier(const fs::path& directory) {
     std::error_code ignored;
     std::vector<fs::path> earlier;
     for (const auto& entry : fs::directory_iterator(directory, ignored))
-        if (is_numbered_png(entry.path(), "difference_x") || is_numbered_png(entry.path(), "layer"))
+        if (is_numbered_png(entry.path(), "difference_x") || is_numbered_png(entry.path(), "layer") ||
+            is_numbered_png(entry.path(), "light_layer"))
             earlier.push_back(entry.path());
     for (const fs::path& path : earlier) fs::remove(path, ignored);
 }
@@ -154,6 +191,7 @@ std::vector<PictureFile> write_pictures(const Comparison& comparison, const fs::
     if (!comparison.reference.composite.empty()) {
         writer.add_frame("reference", comparison.reference);
         writer.add_layers("reference", comparison.reference);
+        writer.add_steps("reference", comparison.reference);
         const std::uint32_t factor = writer.difference_factor();
         for (std::size_t i = 0; i < comparison.runs.size(); ++i) {
             const pipeline::RunResult& run = comparison.runs[i];
@@ -161,6 +199,7 @@ std::vector<PictureFile> write_pictures(const Comparison& comparison, const fs::
             writer.add_hazards(run, comparison.pixels[i]);
             writer.add_difference(run, comparison.pixels[i], factor);
             writer.add_layers(run.design, comparison.pixels[i]);
+            writer.add_steps(run.design, comparison.pixels[i]);
         }
     }
     return writer.write(stop);

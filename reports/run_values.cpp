@@ -12,10 +12,11 @@ namespace {
 
 constexpr std::size_t channels = 3, floats_per_pixel = 4; // of a composite, RGBA
 
+// All, where fragments were counted in the view of a light.
 std::vector<std::size_t> drawn_pixels(const Comparison& comparison) {
     std::vector<std::size_t> pixels;
-    for (std::size_t i = 0; i < comparison.depth_complexity.size(); ++i)
-        if (comparison.depth_complexity[i] != 0) pixels.push_back(i);
+    for (std::size_t i = 0; i < comparison.frame->view.pixels(); ++i)
+        if (comparison.has_light_view() || comparison.depth_complexity[i] != 0) pixels.push_back(i);
     return pixels;
 }
 

@@ -9,9 +9,6 @@
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
-#include <optional>
-#include <string_view>
-#include <vector>
 
 namespace traces {
 
@@ -102,20 +99,6 @@ std::array<double, 2> enclosing_planes(const Scene& scene, const glm::dmat4& vie
     return {std::max(nearest - slack, far / 1000.0), far};
 }
 
-std::optional<std::vector<double>> numbers_in(std::string_view text) {
-    std::vector<double> numbers;
-    for (;;) {
-        const std::size_t comma = text.find(',');
-        const auto part = text.substr(0, comma);
-        double number = 0.0;
-        const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), number);
-        if (error != std::errc{} || end != part.data() + part.size() || !std::isfinite(number)) return std::nullopt;
-        numbers.push_back(number);
-        if (comma == std::string_view::npos) return numbers;
-        text.remove_prefix(comma + 1);
-    }
-}
-
 pipeline::View free_view(const Scene& scene, const std::string& text, const std::vector<double>& n, std::uint32_t width,
                          std::uint32_t height) {
     const glm::dvec3 eye(n[0], n[1], n[2]), target(n[3], n[4], n[5]);
@@ -146,6 +129,20 @@ void check_size(std::uint32_t width, std::uint32_t height) {
 }
 
 } // namespace
+
+std::optional<std::vector<double>> numbers_in(std::string_view text) {
+    std::vector<double> numbers;
+    for (;;) {
+        const std::size_t comma = text.find(',');
+        const auto part = text.substr(0, comma);
+        double number = 0.0;
+        const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), number);
+        if (error != std::errc{} || end != part.data() + part.size() || !std::isfinite(number)) return std::nullopt;
+        numbers.push_back(number);
+        if (comma == std::string_view::npos) return numbers;
+        text.remove_prefix(comma + 1);
+    }
+}
 
 pipeline::View make_view(const Scene& scene, const std::string& camera, std::uint32_t width, std::uint32_t height) {
     check_size(width, height);

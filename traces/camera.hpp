@@ -5,9 +5,15 @@
 #include "traces/scene.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace traces {
+
+/// Finite numbers with commas between them; nothing when the text is anything else.
+std::optional<std::vector<double>> numbers_in(std::string_view text);
 
 /// The view on a scene. `camera` is one of
 ///   auto                  the scene's first camera; without one, a camera that sees the whole bounding sphere

@@ -235,6 +235,11 @@ void PassGraph::vertex_shader_reads(std::uint32_t attributes) {
     passes_.back().attributes = attributes;
 }
 
+void PassGraph::write_targets(std::uint32_t targets) {
+    CHECK(!passes_.empty() && passes_.back().kind == PassKind::draw && targets >= 1);
+    passes_.back().colour_targets = targets;
+}
+
 void PassGraph::use(pipeline::FragmentColour colour) { fragment_colour_ = colour; }
 
 void PassGraph::add_resolve(std::string name, std::vector<std::string> reads, std::vector<std::string> writes) {

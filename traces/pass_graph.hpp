@@ -33,6 +33,8 @@ class PassGraph {
     /// The vertex shader of the pass added last reads these attributes beside what shading needs: bits as in
     /// pipeline::mask_of().
     void vertex_shader_reads(std::uint32_t attributes);
+    /// The pass added last writes that many colour targets at once; see pipeline::Pass::colour_targets.
+    void write_targets(std::uint32_t targets);
     /// What colours all passes of the frame ask their fragments for.
     void use(pipeline::FragmentColour colour);
     void add_resolve(std::string name, std::vector<std::string> reads, std::vector<std::string> writes);

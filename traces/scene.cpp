@@ -3,6 +3,7 @@
 #include "sim/check.hpp"
 #include "traces/generators.hpp"
 #include "traces/gltf_import.hpp"
+#include "traces/ground.hpp"
 #include "traces/scene_bounds.hpp"
 #include "traces/tetrahedra_import.hpp"
 
@@ -42,6 +43,12 @@ void finish_scene(Scene& scene) {
 }
 
 Scene load_scene(const std::string& spec) {
+    constexpr std::string_view ground = "+ground";
+    if (spec.ends_with(ground)) {
+        Scene scene = load_scene(spec.substr(0, spec.size() - ground.size()));
+        add_ground(scene);
+        return scene;
+    }
     if (spec.starts_with("gen:")) return generate_scene(spec);
     if (is_tetrahedra_file(spec)) return import_tetrahedra(spec);
     const std::size_t hash = spec.rfind('#');

@@ -63,7 +63,7 @@ struct Scene {
 };
 
 /// Reads a scene: a path to a .gltf or .glb file, `PATH#N` for its scene number N, a .vtk or .tetm file of tetrahedra,
-/// or `gen:NAME?key=value&key=value`.
+/// or `gen:NAME?key=value&key=value`; each may be followed by `+ground`, which lays a floor below it.
 /// Throws sim::InputError with one line that names file, place and what was expected.
 Scene load_scene(const std::string& spec);
 

@@ -2,6 +2,7 @@
 
 #include "pipeline/functional/vertex_fetch.hpp"
 #include "sim/check.hpp"
+#include "traces/screen_draw.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -49,7 +50,7 @@ void add_triangles(std::vector<SortedTriangle>& triangles, const Frame& frame, s
     const pipeline::PrimitiveReader primitives(*frame.resources, geometry);
     const pipeline::AttributeReader positions(*frame.resources, *geometry.find(pipeline::Semantic::position));
     for (std::uint32_t instance = 0; instance < draw.instances.size(); ++instance) {
-        const glm::dmat4 to_eye = glm::dmat4(frame.view.view) * glm::dmat4(draw.instances[instance]);
+        const glm::dmat4 to_eye = glm::dmat4(frame.view_of_kbuffer().view) * glm::dmat4(draw.instances[instance]);
         for (std::uint32_t i = 0; i < geometry.triangle_count(); ++i) {
             SortedTriangle triangle{number, instance, primitives(i), 0};
             glm::dvec3 sum(0.0);
@@ -141,18 +142,9 @@ class Resubmission {
     // The flushing quad writes nothing, so what it costs is its draw call and the time it covers the screen, which the
     // fragment scheduler counts; its own triangle lies in one point.
     void add_flush_geometry() {
-        pipeline::Buffer buffer;
-        buffer.name = "flush";
-        buffer.bytes.resize(36);
-        pipeline::VertexAttribute position;
-        position.buffer = static_cast<std::uint32_t>(resources_->buffers.size());
-        resources_->buffers.push_back(std::move(buffer));
-        flush_geometry_.name = "flush";
-        flush_geometry_.attributes = {position};
-        flush_geometry_.vertex_count = 3;
-        flush_geometry_.index_count = 3;
-        flush_draw_ = {"flush", 0, static_cast<std::uint32_t>(resources_->materials.size()), {glm::mat4(1.0F)}};
-        resources_->materials.push_back({});
+        BlankDraw blank = add_blank_draw(*resources_, "flush");
+        flush_geometry_ = std::move(blank.geometry);
+        flush_draw_ = std::move(blank.draw);
     }
 
     const Frame& frame_;

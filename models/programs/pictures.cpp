@@ -14,8 +14,8 @@ class ColourPicture final : public pipeline::Resolve {
   public:
     ColourPicture(const ColourSlots& slots, bool of_state) : slots_(slots), of_state_(of_state) {}
 
-    std::vector<float> picture(const Frame& frame, std::span<const float> kbuffer,
-                               std::span<const float> opaque_colour) const override {
+    std::vector<float> picture(const Frame& frame, const pipeline::FinishedSurfaces& surfaces) const override {
+        const auto [kbuffer, opaque_colour, depth] = surfaces;
         const ModifyProgram& program = *frame.program;
         const std::uint32_t floats = program.floats_per_pixel();
         std::vector<float> picture(kbuffer.size() / floats * 4, 1.0F);

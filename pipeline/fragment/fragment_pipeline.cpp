@@ -13,6 +13,7 @@ constexpr std::uint32_t ceil_div(std::uint32_t value, std::uint32_t by) { return
 // whose lines must not be taken for those of the layer before: 2^24 lines are those of the largest surface.
 constexpr std::uint64_t layer_lines = std::uint64_t{1} << 40U;
 constexpr std::uint64_t lines_of_layer = std::uint64_t{1} << 24U;
+constexpr std::uint64_t screen_lines = std::uint64_t{1} << 38U; ///< surfaces that full-screen passes read
 
 } // namespace
 
@@ -110,7 +111,13 @@ void FragmentPipeline::start(const QuadTask& task) {
     const std::uint8_t before = task.mask;
     thread.task.mask = captured_pixels(task);
     stats_.peel_rejects += static_cast<std::uint64_t>(std::popcount(before) - std::popcount(thread.task.mask));
-    std::uint32_t alu = ceil_div(std::max(pass_->shader_costs[draw].alu, 1U), params_.alu_per_clk);
+    std::uint32_t instructions = pass_->shader_costs[draw].alu;
+    if (pass_->screen != nullptr) {
+        const Quad& quad = pass_->stream->quads[task.quad];
+        instructions = pass_->screen->shader->alu(quad.x, quad.y);
+        thread.fetches = pass_->screen->shader->fetches(quad.x, quad.y);
+    }
+    std::uint32_t alu = ceil_div(std::max(instructions, 1U), params_.alu_per_clk);
     // The program's scalar operations run four wide, for the four fragments of the quad side by side.
     if (task.slot != no_slot) alu += ceil_div(pass_->program->cost().operations, 4 * params_.alu_per_clk);
     issue_free_ = cycle() + alu;
@@ -125,6 +132,11 @@ void FragmentPipeline::start(const QuadTask& task) {
 // The 64-byte line of the quad's next read-only fetch: first the material's texture, then the peeled layer; ~0 = no
 // more.
 std::uint64_t FragmentPipeline::fetch_line(const Thread& thread) const {
+    if (pass_->screen != nullptr) {
+        if (thread.fetch == thread.fetches) return ~std::uint64_t{0};
+        const Quad& quad = pass_->stream->quads[thread.task.quad];
+        return screen_lines + pass_->screen->shader->line(quad.x, quad.y, thread.fetch);
+    }
     const bool textured = pass_->textures && !pass_->stream->texture_lines.empty() &&
                           pass_->stream->texture_lines[thread.task.quad] != ~std::uint32_t{0};
     if (thread.fetch == 0 && textured) return pass_->stream->texture_lines[thread.task.quad];
@@ -136,14 +148,22 @@ std::uint64_t FragmentPipeline::fetch_line(const Thread& thread) const {
     return ~std::uint64_t{0};
 }
 
+// Texels of 4 and of 16 bytes take the times of the unit's parameters, those between a time between.
+std::uint32_t FragmentPipeline::fetch_cycles() const {
+    if (pass_->screen == nullptr) return texture_.cycles_per_fetch;
+    const std::uint32_t narrow = texture_.cycles_per_fetch, wide = std::max(narrow, texture_.cycles_per_rgba32f);
+    return narrow + ceil_div((wide - narrow) * (std::clamp(pass_->screen->texel_bytes, 4U, 16U) - 4), 12);
+}
+
 // Fetches one after the other; each costs texture unit time, and a miss the way to memory.
 void FragmentPipeline::fetch_textures(std::uint16_t index) {
     Thread& thread = threads_[index];
+    const std::uint32_t cycles = fetch_cycles();
     for (;;) {
         const std::uint64_t line = fetch_line(thread);
         if (line == ~std::uint64_t{0}) break;
-        texture_free_ = std::max(texture_free_, cycle()) + texture_.cycles_per_fetch;
-        stats_.texture_cycles += texture_.cycles_per_fetch;
+        texture_free_ = std::max(texture_free_, cycle()) + cycles;
+        stats_.texture_cycles += cycles;
         const std::uint32_t found = l1_.find_texture(line);
         if (found != TextureCache::none && !l1_.pending(found)) {
             ++stats_.l1.texture_hits;

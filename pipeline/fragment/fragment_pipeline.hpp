@@ -6,7 +6,9 @@
 // results leave one per cycle, out of order. A k-buffer value is sampled when its L1 lookup hits, or when the memory
 // side serves it; a hit is available after the hit latency, like any texel. Where the shader has a critical section, it
 // asks the lock table before it reads. A miss on its way when its line is
-// invalidated serves whoever waits for it already, and is not kept. Not modelled: individual instructions; branches.
+// invalidated serves whoever waits for it already, and is not kept. The loop of a full-screen pass fetches without
+// waiting as long as it hits, and runs as long as its longest pixel. Not modelled: individual instructions; branches;
+// fetches of one quad that go to several lines.
 // Source: specification 004, sections 7, 7.1 (t_disp, t_rd, t_done; read value rule).
 #pragma once
 
@@ -106,7 +108,8 @@ class FragmentPipeline final : public sim::Component {
             0;                 ///< of L1 when the lookup was made, or one of its own when the line was invalidated
         std::uint32_t alu = 0; ///< cycles its instructions need to issue
         std::uint32_t line = TextureCache::none; ///< texture line this thread is filling
-        std::uint8_t fetch = 0;                  ///< next of the quad's read-only fetches
+        std::uint32_t fetch = 0;                 ///< next of the quad's read-only fetches
+        std::uint32_t fetches = 0;               ///< how many the shader of a full-screen pass makes
         std::uint16_t next = nobody;             ///< in the chain of threads that wait for one block or line
     };
     struct Chain { ///< of threads, the oldest first
@@ -130,6 +133,7 @@ class FragmentPipeline final : public sim::Component {
     void invalidate(std::uint32_t block);
     void start(const QuadTask& task);
     void fetch_textures(std::uint16_t thread);
+    std::uint32_t fetch_cycles() const;
     std::uint64_t fetch_line(const Thread& thread) const;
     void texture_arrived(std::uint16_t thread);
     void fetched(std::uint16_t thread);

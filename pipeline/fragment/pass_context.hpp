@@ -47,6 +47,7 @@ struct PassContext {
     DepthFormat read_only_format = DepthFormat::d24;
     DepthFormat depth_format = DepthFormat::d24; ///< of the surface that the pass tests and writes
     std::vector<ShaderCost> shader_costs;        ///< by draw
+    const ScreenPass* screen = nullptr;          ///< a full-screen pass, whose shader counts for every quad
     bool textures = false;
 
     std::uint32_t draw_of(QuadId quad) const { return stream->draw_of(quad); }

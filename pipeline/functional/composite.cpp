@@ -71,14 +71,8 @@ class Compositor {
     std::uint32_t floats_, slot_;
 };
 
-std::vector<float> drained(const ModifyProgram& program, std::span<const float> kbuffer) {
-    std::vector<float> pixels(kbuffer.begin(), kbuffer.end());
-    for (std::size_t at = 0; at < pixels.size(); at += program.floats_per_pixel()) program.drain(pixels.data() + at);
-    return pixels;
-}
-
-std::vector<float> composite_layers(const Frame& frame, std::span<const float> kbuffer,
-                                    std::span<const float> opaque_colour) {
+std::vector<float> composite_layers(const Frame& frame, const FinishedSurfaces& surfaces) {
+    const auto [kbuffer, opaque_colour, depth] = surfaces;
     const std::size_t pixels = std::size_t{frame.view.width} * frame.view.height;
     const std::size_t floats = frame.program->floats_per_pixel();
     const Compositor layers(frame);
@@ -98,19 +92,15 @@ std::vector<float> composite_layers(const Frame& frame, std::span<const float> k
 
 } // namespace
 
-std::vector<float> composite(const Frame& frame, std::span<const float> kbuffer, std::span<const float> opaque_colour) {
+std::vector<float> composite(const Frame& frame, const FinishedSurfaces& surfaces) {
     CHECK(frame.program != nullptr);
-    const std::size_t pixels = std::size_t{frame.view.width} * frame.view.height;
-    CHECK(kbuffer.size() == pixels * frame.program->floats_per_pixel());
-    CHECK(opaque_colour.empty() || opaque_colour.size() == pixels * 4);
-
-    std::vector<float> finished;
-    if (frame.program->drains()) {
-        finished = drained(*frame.program, kbuffer);
-        kbuffer = finished;
-    }
-    return frame.resolve ? frame.resolve->picture(frame, kbuffer, opaque_colour)
-                         : composite_layers(frame, kbuffer, opaque_colour);
+    const std::size_t pixels = frame.view.pixels();
+    CHECK(surfaces.kbuffer.size() == frame.view_of_kbuffer().pixels() * frame.program->floats_per_pixel());
+    CHECK(surfaces.colour.empty() || surfaces.colour.size() == pixels * 4);
+    CHECK(surfaces.depth.empty() || surfaces.depth.size() == pixels);
+    return with_drained(frame, surfaces, [&frame](const FinishedSurfaces& finished) {
+        return frame.resolve ? frame.resolve->picture(frame, finished) : composite_layers(frame, finished);
+    });
 }
 
 } // namespace pipeline

@@ -8,17 +8,29 @@
 
 namespace pipeline {
 
-/// The picture of a frame: drains the pixels of `kbuffer` if the program asks for it, and hands them to frame.resolve;
-/// without one, composites the layers.
+/// The picture of a frame: drains the pixels of the k-buffer if the program asks for it, and hands them to
+/// frame.resolve; without one, composites the layers.
 ///
-/// Compositing: RGBA floats per pixel (alpha 1) of `kbuffer`, which holds program->floats_per_pixel() floats per pixel,
-/// row 0 first: C += T * a * c_i and T *= 1 - a over the entries in stored order with a = frame.opacity, then C += T *
-/// background.
+/// Compositing: RGBA floats per pixel (alpha 1): C += T * a * c_i and T *= 1 - a over the entries in stored order with
+/// a = frame.opacity, then C += T * background.
 ///
-/// The background is `opaque_colour` (RGBA floats per pixel) or, where that is empty, frame.background. Entries that
+/// The background is the colour surface or, where there is none, frame.background. Entries that
 /// still have the depth they were cleared to are empty. Programs with four floats per entry give the layers' colours;
 /// depth-only programs get a grey ramp instead: 0.9 at the near plane to 0.1 at the far plane, linear in the logarithm
 /// of the distance (perspective) or in the distance (parallel projection).
-std::vector<float> composite(const Frame& frame, std::span<const float> kbuffer, std::span<const float> opaque_colour);
+std::vector<float> composite(const Frame& frame, const FinishedSurfaces& surfaces);
+
+/// Calls `use(surfaces)` with the pixels of the k-buffer drained, as every resolve takes them.
+template <class Use>
+auto with_drained(const Frame& frame, FinishedSurfaces surfaces, Use use) {
+    std::vector<float> finished;
+    if (frame.program->drains()) {
+        finished.assign(surfaces.kbuffer.begin(), surfaces.kbuffer.end());
+        const std::size_t floats = frame.program->floats_per_pixel();
+        for (std::size_t at = 0; at < finished.size(); at += floats) frame.program->drain(finished.data() + at);
+        surfaces.kbuffer = finished;
+    }
+    return use(surfaces);
+}
 
 } // namespace pipeline

@@ -78,6 +78,8 @@ class VertexFetch final : public sim::Component {
 
     Stats stats() const;
     const Params& params() const { return params_; }
+    /// What the shaders of the passes from now on read; between passes.
+    void read(const Needs& needs) { needs_ = needs; }
     /// Bytes requested, by draw; draws not seen may be missing at the end.
     const std::vector<std::uint64_t>& draw_bytes() const { return draw_bytes_; }
 

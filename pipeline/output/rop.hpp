@@ -56,6 +56,7 @@ struct RopSurfaces {
 /// What a partition is built for.
 struct RopShape {
     std::uint32_t pipes = 1;         ///< texture units that may read the k-buffer
+    std::uint32_t tiles = 0;         ///< of the largest surface that any pass draws onto
     std::size_t draws = 0;           ///< draws of the frame, for the counters per draw
     bool depth = true;               ///< has a depth tile cache
     bool colour = true;              ///< has a colour tile cache

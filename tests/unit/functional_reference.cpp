@@ -316,7 +316,7 @@ TEST(Composite, DepthOnlyEntriesAreGreyAndDarkerWithDistance) {
     const std::vector<float> kbuffer{0.0F, 2, 2, 2, 0.5F, 2, 2, 2, 1.0F, 2, 2, 2};
     for (const bool perspective : {false, true}) {
         frame.view.projection = perspective ? glm::perspective(1.0F, 1.0F, 0.5F, 50.0F) : glm::mat4(1.0F);
-        const std::vector<float> picture = composite(frame, kbuffer, {});
+        const std::vector<float> picture = composite(frame, {kbuffer, {}, {}});
         EXPECT_NEAR(picture[0], 0.9F, 1e-5F);
         EXPECT_LT(picture[4], picture[0]);
         EXPECT_NEAR(picture[8], 0.1F, 1e-4F);

@@ -38,8 +38,9 @@ class CsgPicture final : public pipeline::Resolve {
   public:
     explicit CsgPicture(CsgExpression expression) : expression_(std::move(expression)) {}
 
-    std::vector<float> picture(const pipeline::Frame& frame, std::span<const float> kbuffer,
-                               std::span<const float>) const override {
+    std::vector<float> picture(const pipeline::Frame& frame,
+                               const pipeline::FinishedSurfaces& surfaces) const override {
+        const std::span<const float> kbuffer = surfaces.kbuffer;
         const CsgSurface surface = csg_surface(frame, kbuffer, expression_);
         const SurfaceImage& image = surface.image;
         std::vector<float> picture;

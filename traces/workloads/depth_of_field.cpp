@@ -50,8 +50,9 @@ class DepthOfFieldPicture final : public pipeline::Resolve {
   public:
     DepthOfFieldPicture(const Lens& lens, double largest_blur) : lens_(lens), largest_blur_(largest_blur) {}
 
-    std::vector<float> picture(const pipeline::Frame& frame, std::span<const float> kbuffer,
-                               std::span<const float>) const override {
+    std::vector<float> picture(const pipeline::Frame& frame,
+                               const pipeline::FinishedSurfaces& surfaces) const override {
+        const std::span<const float> kbuffer = surfaces.kbuffer;
         std::vector<glm::vec3> colours(kbuffer.size() / frame.program->floats_per_pixel(), glm::vec3(frame.background));
         for (std::uint32_t slot = frame.program->k(); slot-- > 0;) {
             const std::vector<glm::vec4> layer = blurred(frame, kbuffer, slot);

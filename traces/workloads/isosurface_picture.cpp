@@ -22,8 +22,9 @@ class IsosurfacePicture final : public pipeline::Resolve {
   public:
     explicit IsosurfacePicture(bool silhouettes) : silhouettes_(silhouettes) {}
 
-    std::vector<float> picture(const pipeline::Frame& frame, std::span<const float> kbuffer,
-                               std::span<const float>) const override {
+    std::vector<float> picture(const pipeline::Frame& frame,
+                               const pipeline::FinishedSurfaces& surfaces) const override {
+        const std::span<const float> kbuffer = surfaces.kbuffer;
         const std::size_t floats = frame.program->floats_per_pixel(), pixels = kbuffer.size() / floats;
         SurfaceImage surface(frame.view);
         std::vector<std::size_t> iso(pixels);

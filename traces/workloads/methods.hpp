@@ -20,6 +20,7 @@ Workload depth_of_field_workload();
 Workload isosurface_workload();
 Workload volume_workload();
 Workload particles_workload();
+Workload soft_shadows_workload();
 
 /// A row of the table of workloads; `build` takes (scene, view, parameters).
 template <sim::Described P, class Build>

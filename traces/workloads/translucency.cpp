@@ -68,8 +68,9 @@ class TranslucencyPicture final : public pipeline::Resolve {
   public:
     TranslucencyPicture(std::vector<double> sigma, bool fresnel) : sigma_(std::move(sigma)), fresnel_(fresnel) {}
 
-    std::vector<float> picture(const pipeline::Frame& frame, std::span<const float> kbuffer,
-                               std::span<const float>) const override {
+    std::vector<float> picture(const pipeline::Frame& frame,
+                               const pipeline::FinishedSurfaces& surfaces) const override {
+        const std::span<const float> kbuffer = surfaces.kbuffer;
         const ViewRays rays(frame.view);
         const std::size_t floats = frame.program->floats_per_pixel();
         std::vector<float> picture;

@@ -75,8 +75,9 @@ models::TransferFunction transfer_of(const VolumeParams& params, ScalarRange ran
 
 class VolumePicture final : public pipeline::Resolve {
   public:
-    std::vector<float> picture(const pipeline::Frame& frame, std::span<const float> kbuffer,
-                               std::span<const float>) const override {
+    std::vector<float> picture(const pipeline::Frame& frame,
+                               const pipeline::FinishedSurfaces& surfaces) const override {
+        const std::span<const float> kbuffer = surfaces.kbuffer;
         const pipeline::ModifyProgram& program = *frame.program;
         const std::size_t floats = program.floats_per_pixel();
         const std::size_t state = std::size_t{program.k()} * program.floats_per_entry();

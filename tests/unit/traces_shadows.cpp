@@ -111,25 +111,22 @@ TEST(ShadowKernelS3, AHalfPlaneThroughTheAxisTakesHalf) {
     EXPECT_NEAR(kernel.visibility(region, 0), 0.5F, 1.0F / region.width);
 }
 
-// Two half planes that leave no way to the light together, while each leaves some: the second is hidden behind the
-// first, as the middle of the light sees it, where they overlap.
+// Two occluders of which each leaves some light, and both together none. The lower one lies in the shadow of the upper
+// one, as the middle of the light sees it, so that only a second layer knows of it: rays from the receiver at 10 to the
+// light, half a unit wide, pass the upper plane (at 4) left of x = 5/256 * 4 where they end left of 0.13; those that
+// end between -0.18 and 0.29 meet the lower one (at 6).
 TEST(ShadowKernelS4, SecondLayerKeepsLightFromBleeding) {
     const AreaLight light = unit_light(0.5);
-    // The upper one covers the left half from the light's middle; the lower one begins where rays of the light's right
-    // rim that pass the upper one's edge arrive.
-    const Layer lower = [](double x, double) { return x > -0.2 ? 6.0 : nothing; };
-    const Layer first = [&](double x, double y) { return std::min(half_plane(4.0)(x, y), lower(x, y)); };
-    const Layer second = [&](double x, double y) {
-        const double upper = half_plane(4.0)(x, y), under = lower(x, y);
-        return upper != nothing && under != nothing ? under : 10.0;
-    };
+    constexpr double edge = 5.0 / 256, begin = -3.0 / 256;
+    const Layer first = [](double x, double) { return x < edge ? 4.0 : 10.0; };
+    const Layer second = [](double x, double) { return x > begin && x < edge ? 6.0 : 10.0; };
     const ShadowMap map_two = map_of(light, floats_32, {first, second, plane(10.0)});
     ShadowMapOptions one = floats_32;
     one.layers = 1;
     const ShadowMap map_one = map_of(light, one, {first, second, plane(10.0)});
     const glm::dvec3 at = point(light, 0.0, 0.0, 10.0);
     const float width = ShadowKernel(map_two, all_texels).region(at).width;
-    EXPECT_GT(visibility(map_one, all_texels, at), 3.0F / width);
+    EXPECT_NEAR(visibility(map_one, all_texels, at), 0.24F, 1.0F / width);
     EXPECT_LE(visibility(map_two, all_texels, at), 1.0F / width);
 }
 
@@ -154,7 +151,8 @@ TEST(ShadowKernelS8, IsANumberBetweenNoneAndAllHoweverNearTheOccluder) {
                     }
             }
     // The product of two depths beyond 256 is more than a half can hold; here it is none.
-    EXPECT_NEAR(traces::covered_share(unit_light(), 1024, 0, 0, 0.5F, 300.0F, 400.0F), 1.3733, 1e-3);
+    EXPECT_NEAR(traces::covered_share(unit_light(10.0), 1024, 0, 0, 0.5F, 300.0F, 400.0F), 0.1171875F * 0.1171875F,
+                1e-6);
     EXPECT_EQ(traces::covered_share(unit_light(), 1024, 0, 0, 0.5F, 5.0F, 5.0F), 0.0F);
     EXPECT_EQ(traces::covered_share(unit_light(), 1024, 0, 0, 0.5F, 6.0F, 5.0F), 0.0F);
 }

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
+#include <optional>
 
 namespace reports {
 
@@ -20,18 +21,19 @@ void add(TruthError& error, double difference) {
     error.wrong += difference <= error.tolerance ? 0 : 1;
 }
 
-/// Of two distances, 0 for none.
-double depth_difference(double truth, double other) {
-    if ((truth == 0.0) != (other == 0.0)) return std::numeric_limits<double>::infinity();
-    return truth == other ? 0.0 : std::fabs(other - truth) / std::fabs(truth);
+using Distance = std::optional<double>;
+
+double depth_difference(const Distance& truth, const Distance& other) {
+    if (!truth || !other) return std::numeric_limits<double>::infinity();
+    return *truth == *other ? 0.0 : std::fabs(*other - *truth) / std::fabs(*truth);
 }
 
-/// other(pixel): the distance to compare with truth(pixel), 0 for none.
+/// Both give the Distance at a pixel.
 template <class TruthDepth, class OtherDepth>
 void compare_depths(const Truth& truth, TruthError& error, TruthDepth truth_depth, OtherDepth other_depth) {
     for (std::size_t pixel = 0; pixel < truth.pixels(); ++pixel) {
-        const double here = static_cast<double>(truth_depth(pixel)), there = other_depth(pixel);
-        if (here == 0.0 && there == 0.0) continue;
+        const Distance here = truth_depth(pixel), there = other_depth(pixel);
+        if (!here && !there) continue;
         if (truth.doubtful(pixel))
             ++error.doubtful;
         else
@@ -50,9 +52,14 @@ TruthError layer_error(const Truth& truth, const pipeline::Frame& frame, std::sp
     error.what = fmt::format("layer {}", layer);
     error.tolerance = depth_tolerance;
     compare_depths(
-        truth, error, [&](std::size_t pixel) { return truth.depths[pixel * truth.layers + layer]; },
-        [&](std::size_t pixel) {
-            return layout.is_empty(kbuffer, pixel, layer) ? 0.0 : eye.distance(layout.depth(kbuffer, pixel, layer));
+        truth, error,
+        [&](std::size_t pixel) -> Distance {
+            if (layer >= truth.layers_at(pixel)) return std::nullopt;
+            return truth.depths[pixel * truth.layers + layer];
+        },
+        [&](std::size_t pixel) -> Distance {
+            if (layout.is_empty(kbuffer, pixel, layer)) return std::nullopt;
+            return eye.distance(layout.depth(kbuffer, pixel, layer));
         });
     return error;
 }
@@ -90,11 +97,16 @@ TruthError solid_error(const Truth& truth, const pipeline::Frame& frame, std::sp
     error.what = "solid";
     error.tolerance = depth_tolerance;
     compare_depths(
-        truth, error, [&](std::size_t pixel) { return truth.solid[pixel]; },
-        [&](std::size_t pixel) {
+        truth, error,
+        [&](std::size_t pixel) -> Distance {
+            if (!truth.has_solid(pixel)) return std::nullopt;
+            return truth.solid[pixel];
+        },
+        [&](std::size_t pixel) -> Distance {
             const auto x = static_cast<std::uint32_t>(pixel % truth.width);
             const auto y = static_cast<std::uint32_t>(pixel / truth.width);
-            return surface.image.sees(x, y) ? surface.image.distance(x, y) : 0.0;
+            if (!surface.image.sees(x, y)) return std::nullopt;
+            return surface.image.distance(x, y);
         });
     return error;
 }

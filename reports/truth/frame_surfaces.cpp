@@ -6,9 +6,10 @@ namespace reports {
 
 namespace {
 
-bool mirrors(const pipeline::View& view) {
+/// Triangles turn the other way on the screen, y up, than a ray sees them.
+bool mirrors(const pipeline::View& view, double sense) {
     const glm::dmat4 projection(view.projection);
-    return glm::determinant(glm::dmat3(glm::dmat4(view.view))) * projection[0][0] * projection[1][1] < 0.0;
+    return sense * glm::determinant(glm::dmat3(glm::dmat4(view.view))) * projection[0][0] * projection[1][1] < 0.0;
 }
 
 bool is_doubtful(const RayHit& hit) {
@@ -18,7 +19,10 @@ bool is_doubtful(const RayHit& hit) {
 } // namespace
 
 FrameSurfaces::FrameSurfaces(const pipeline::Frame& frame, const RayScene& scene, const PixelRays& rays)
-    : roles_(frame.draws.size()), view_mirrors_(mirrors(frame.view)), shading_(frame, scene, rays) {
+    : roles_(frame.draws.size()),
+      view_mirrors_(mirrors(frame.view, rays.sense())),
+      rays_(rays),
+      shading_(frame, scene, rays) {
     for (const pipeline::Pass& pass : frame.passes)
         for (const std::uint32_t draw : pass.draws)
             if (pass.kbuffer || pass.depth.write)
@@ -47,7 +51,7 @@ void FrameSurfaces::find(std::span<const RayHit> hits, std::uint32_t x, std::uin
         surfaces.doubtful = surfaces.doubtful || is_doubtful(hit);
         const HitShading::Shaded shaded = shading_(hit, x, y);
         if (!shaded.alive) continue;
-        const FrameSurface surface{hit.t, hit.draw, glm::vec3(shaded.colour)};
+        const FrameSurface surface{rays_.distance(hit.t), hit.draw, glm::vec3(shaded.colour)};
         if (role == Role::layer) {
             surfaces.layers.push_back(surface);
             continue;

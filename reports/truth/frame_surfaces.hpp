@@ -55,6 +55,7 @@ class FrameSurfaces {
     std::vector<DrawRole> roles_;            ///< by draw
     std::vector<pipeline::Culling> culling_; ///< by mesh, where not both faces are drawn
     bool view_mirrors_;
+    const PixelRays& rays_;
     HitShading shading_;
 };
 

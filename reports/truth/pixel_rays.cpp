@@ -24,15 +24,16 @@ PixelRays::PixelRays(const pipeline::View& view)
       to_world_(glm::inverse(glm::dmat4(view.view))),
       near_(rays_.distance(0.0F)),
       far_(rays_.distance(1.0F)),
+      sense_(far_ < near_ ? -1.0 : 1.0),
       perspective_(view.projection[2][3] != 0.0F) {}
 
 WorldRay PixelRays::operator()(std::uint32_t x, std::uint32_t y) const {
-    const glm::dvec3 from = rays_.place(x, y, near_), step = rays_.place(x, y, near_ + 1.0) - from;
+    const glm::dvec3 from = rays_.place(x, y, near_), step = rays_.place(x, y, near_ + sense_) - from;
     WorldRay ray;
     ray.step = glm::dvec3(to_world_ * glm::dvec4(step, 0.0));
-    ray.origin = glm::dvec3(to_world_ * glm::dvec4(from, 1.0)) - near_ * ray.step;
-    ray.begin = near_;
-    ray.end = far_;
+    ray.begin = sense_ * near_;
+    ray.end = sense_ * far_;
+    ray.origin = glm::dvec3(to_world_ * glm::dvec4(from, 1.0)) - ray.begin * ray.step;
     return ray;
 }
 

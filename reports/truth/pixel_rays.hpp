@@ -28,15 +28,19 @@ class PixelRays {
   public:
     explicit PixelRays(const pipeline::View& view);
 
-    /// In world space, from the near to the far plane; t is the distance along the view axis.
+    /// In world space, from the near to the far plane.
     WorldRay operator()(std::uint32_t x, std::uint32_t y) const;
+    /// Distance along the view axis at t of a ray. A parallel projection may look the other way: then they decrease.
+    double distance(double t) const { return sense_ * t; }
+    double sense() const { return sense_; } ///< 1 or -1
     const traces::ViewRays& in_eye_space() const { return rays_; }
     bool perspective() const { return perspective_; }
 
   private:
     traces::ViewRays rays_;
     glm::dmat4 to_world_;
-    double near_, far_;
+    double near_, far_; ///< distances
+    double sense_;
     bool perspective_;
 };
 

@@ -79,6 +79,7 @@ class Composition {
         for (const FrameSurface& layer : surfaces.layers) {
             if (!walk.cross(layer.draw)) continue;
             truth_.solid[pixel] = static_cast<float>(layer.distance);
+            truth_.marks[pixel] |= Truth::solid_mark;
             solid_.image.set_distance(pixel, layer.distance);
             solid_.objects[pixel] = layer.draw;
             return;

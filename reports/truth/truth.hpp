@@ -53,19 +53,20 @@ struct Truth {
     std::uint32_t width = 0, height = 0; ///< pixels
     std::uint32_t layers = 0;            ///< as asked for
     std::vector<std::uint32_t> surfaces; ///< fragments of each pixel, the opaque one included
-    std::vector<float> depths;           ///< `layers` a pixel: distance along the view axis, nearest first; 0 = none
-    std::vector<float> colours;          ///< linear RGBA
-    std::vector<float> inside;           ///< translucency: length inside all objects
-    std::vector<float> solid;            ///< CSG: distance of the solid along the view axis; 0 = none
-    std::vector<float> visibility;       ///< with a light: its visible share, 1 where nothing is seen
-    std::vector<std::uint8_t> marks;     ///< of each pixel
+    std::vector<float> depths;     ///< `layers` a pixel: distance along the view axis, nearest first; 0 behind the last
+    std::vector<float> colours;    ///< linear RGBA
+    std::vector<float> inside;     ///< translucency: length inside all objects
+    std::vector<float> solid;      ///< CSG: distance of the solid along the view axis, where there is one
+    std::vector<float> visibility; ///< with a light: its visible share, 1 where nothing is seen
+    std::vector<std::uint8_t> marks; ///< of each pixel
     TruthCounts counts;
 
-    static constexpr std::uint8_t doubtful_mark = 1, opaque_mark = 2;
+    static constexpr std::uint8_t doubtful_mark = 1, opaque_mark = 2, solid_mark = 4;
 
     std::size_t pixels() const { return std::size_t{width} * height; }
     /// See PixelSurfaces.
     bool doubtful(std::size_t pixel) const { return (marks[pixel] & doubtful_mark) != 0; }
+    bool has_solid(std::size_t pixel) const { return (marks[pixel] & solid_mark) != 0; }
     /// Fragments for the k-buffer.
     std::uint32_t layers_at(std::size_t pixel) const {
         return surfaces[pixel] - ((marks[pixel] & opaque_mark) != 0 ? 1 : 0);

@@ -44,8 +44,9 @@ void trace(const Supervision& supervision, TruthRun& run) {
     enter(supervision, Progress::Phase::tracing);
     const Stopwatch watch;
     const RayScene scene(run.frame->resources, run.frame->draws);
+    run.build_seconds = watch.seconds();
     run.truth = trace_truth(*run.frame, scene, run.plan, {run.threads, supervision.stop, share_of(supervision)});
-    run.tracing_seconds = watch.seconds();
+    run.tracing_seconds = watch.seconds() - run.build_seconds;
 }
 
 void trace_or_find(const TruthRequest& request, const Supervision& supervision, TruthRun& run) {

@@ -32,7 +32,8 @@ struct TruthRun {
     std::vector<TruthError> errors; ///< of the frame in submission order, where that was asked for
     std::vector<std::string> notes; ///< about the cache
     bool cached = false;
-    double tracing_seconds = 0; ///< host time of making the rays' scene and of the rays; 0 when cached
+    double build_seconds = 0;   ///< host time of making the rays' scene; 0 when cached
+    double tracing_seconds = 0; ///< of the rays, with shading; 0 when cached
     double seconds = 0;         ///< host time of everything
     unsigned threads = 1;
 

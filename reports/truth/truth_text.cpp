@@ -75,6 +75,7 @@ std::string pixels_text(const TruthRun& run, bool colour) {
          {"rays", ""},
          {"rays/light", "per point"},
          {"light seen", "mean"},
+         {"build", "s"},
          {"time", "s"},
          {"rays/s", "M"},
          {"from", "", true}},
@@ -85,6 +86,7 @@ std::string pixels_text(const TruthRun& run, bool colour) {
               ? with_commas(std::uint64_t{light_parts(run.plan.sampling.rays)} * light_parts(run.plan.sampling.rays))
               : "-",
           run.plan.light ? fmt::format("{:.4f}", visibility_mean(run.truth)) : "-",
+          run.cached ? "-" : fmt::format("{:.2f}", run.build_seconds),
           run.cached ? "-" : fmt::format("{:.2f}", run.tracing_seconds),
           run.cached ? "-" : fmt::format("{:.2f}", run.rays_per_second() / 1e6), run.cached ? "cache" : "rays"}},
         colour);
@@ -115,6 +117,7 @@ ordered_json truth_json(const TruthRun& run) {
     for (const TruthError& error : run.errors) errors.push_back(error_json(error));
     json["errors"] = std::move(errors);
     json["host"] = {{"seconds", run.seconds},
+                    {"build_seconds", run.build_seconds},
                     {"tracing_seconds", run.tracing_seconds},
                     {"rays_per_second", run.rays_per_second()},
                     {"cached", run.cached},

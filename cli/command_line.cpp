@@ -15,6 +15,7 @@ constexpr const char* general_help = R"(Examples:
   ropsim compare scene.glb --out report        four designs; then open report/report.html
   ropsim compare gen:blob --k 8 --entry z      a scene made by rule
   ropsim run scene.glb --design blender        every counter of one design
+  ropsim truth scene.glb --check --out truth   the frame by ray tracing, beside the rasterized one
   ropsim geometry scene.glb --gpu g70          what limits the geometry feed, and what helps
   ropsim validate geometry                     the model beside published measurements
   ropsim study batching                        one question, a table and a plot
@@ -31,6 +32,12 @@ constexpr const char* run_help = R"(Examples:
   ropsim run scene.glb --design scoreboard --set scoreboard.side_buffer=128
   ropsim run scene.glb --design scoreboard --timeline --out report
   ropsim run "gen:stack?n=64" --design blender --size 64x64 --json)";
+
+constexpr const char* truth_help = R"(Examples:
+  ropsim truth scene.glb --out truth
+  ropsim truth gen:slabs --workload translucency --set workload.sigma=2 --check
+  ropsim truth gen:csg --workload csg --set 'workload.expression=A & !B' --check
+  ropsim truth scene.glb --light 0,9,0,1,0,0,0,0,1 --rays 1000 --size 800x600 --out shadows)";
 
 constexpr const char* geometry_help = R"(Examples:
   ropsim geometry scene.glb --gpu g70
@@ -100,6 +107,50 @@ void add_output_options(CLI::App& command, OutputOptions& options) {
         ->type_name("DIR");
     command.add_flag("--json", options.json, "Print result.json on standard output, and nothing else");
     command.add_flag("--no-images", options.no_images, "Write no pictures (OpenImageIO is not loaded)");
+}
+
+void add_truth(CLI::App& command, TruthCommand& options) {
+    command
+        .add_option("scene", options.scene,
+                    "glTF file (.glb, .gltf), FILE#N for its scene number N, tetrahedra (.vtk, .tetm), or "
+                    "gen:NAME?key=value&key=value")
+        ->required()
+        ->type_name("SCENE");
+    command
+        .add_option("--workload", options.workload,
+                    "Rendering method: transparency, translucency, csg or opaque (default transparency)")
+        ->type_name("NAME");
+    command.add_option("--k", options.k, "Entries per pixel of the k-buffer that --check compares")->type_name("K");
+    command.add_option("--size", options.size, "Pixels of the frame (default 512x512)")->type_name("WxH");
+    command
+        .add_option(
+            "--camera", options.camera,
+            "auto, the number of a camera of the scene, or ex,ey,ez,tx,ty,tz,fovy (eye, target, vertical degrees)")
+        ->type_name("CAMERA");
+    command.add_option("--set", options.settings, "Sets a parameter of the workload (workload.KEY); may be repeated")
+        ->type_name("PATH=VALUE")
+        ->allow_extra_args(false)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    command.add_option("--layers", options.layers, "Layers whose depths are kept (default 8)")->type_name("N");
+    command
+        .add_option("--light", options.light,
+                    "Also how much of a square light each pixel's surface sees: centre x,y,z and two half edges "
+                    "x,y,z each, nine numbers")
+        ->type_name("LIGHT");
+    command
+        .add_option("--rays", options.rays,
+                    "Rays to the light from each surface, as near as n x n comes to it (default 1000)")
+        ->type_name("N");
+    command.add_option("--seed", options.seed, "Seed of the places on the light (default 1)")->type_name("N");
+    command.add_option("--threads", options.threads, "Threads (default: all cores); results do not depend on it")
+        ->type_name("N");
+    command.add_flag("--check", options.check, "Also rasterize the frame in submission order and compare");
+    command.add_option("--out", options.directory, "Folder for truth.json and pictures")->type_name("DIR");
+    command.add_flag("--json", options.json, "Print one JSON document on standard output, and nothing else");
+    command.add_flag("--no-images", options.no_images, "Write no pictures (OpenImageIO is not loaded)");
+    command.add_flag("--no-cache", options.no_cache,
+                     "Neither look for an earlier run's rays in ~/.cache/ropsim nor keep these there");
+    command.footer(truth_help);
 }
 
 void add_geometry(CLI::App& command, GeometryCommand& options) {
@@ -179,6 +230,8 @@ struct Parser {
             ->needs("--out");
         command->footer(run_help);
 
+        add_truth(*app.add_subcommand("truth", "A frame by ray tracing, with any number of fragments per pixel"),
+                  truth);
         add_geometry(*app.add_subcommand("geometry", "What limits the geometry feed of a scene, and what helps"),
                      geometry);
 
@@ -223,6 +276,7 @@ struct Parser {
     CLI::App app;
     CompareCommand compare;
     RunCommand run;
+    TruthCommand truth;
     GeometryCommand geometry;
     ValidateCommand validate;
     CalibrateCommand calibrate;
@@ -298,6 +352,7 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
         return ShowText{fmt::format("ropsim {} ({})\n", reports::version_text(), reports::build_text())};
     if (app.got_subcommand("compare")) return parser.compare;
     if (app.got_subcommand("run")) return parser.run;
+    if (app.got_subcommand("truth")) return parser.truth;
     if (app.got_subcommand("geometry")) return parser.geometry;
     if (app.got_subcommand("validate")) return parser.validate;
     if (app.got_subcommand("calibrate")) return parser.calibrate;

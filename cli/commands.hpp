@@ -7,6 +7,7 @@ namespace cli {
 
 void compare(const CompareCommand& command);
 void run(const RunCommand& command);
+void truth(const TruthCommand& command);
 void geometry(const GeometryCommand& command);
 void validate(const ValidateCommand& command);
 void calibrate(const CalibrateCommand& command);

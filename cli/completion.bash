@@ -30,7 +30,7 @@ _ropsim() {
     local frame="--gpu --workload --k --entry --program --size --camera --seed --threads --set --out --json --no-images --help"
     COMPREPLY=()
     if ((COMP_CWORD == 1)); then
-        _ropsim_words "compare run geometry validate calibrate study describe --help --version"
+        _ropsim_words "compare run truth geometry validate calibrate study describe --help --version"
         return
     fi
     case $before in
@@ -50,12 +50,15 @@ _ropsim() {
         --fidelity) _ropsim_words "estimate detailed"; return ;;
         --export) _ropsim_files glb; return ;;
         --out | --write) mapfile -t COMPREPLY < <(compgen -d -- "$word"); compopt -o filenames; return ;;
-        --k | --seed | --threads) return ;;
+        --k | --seed | --threads | --layers | --light | --rays) return ;;
     esac
     local measure="--gpus --fidelity --threads --json --help"
     case $command in
         compare) [[ $word == -* ]] && _ropsim_words "--designs $frame" || _ropsim_files glb gltf ;;
         run) [[ $word == -* ]] && _ropsim_words "--design $frame" || _ropsim_files glb gltf ;;
+        truth)
+            [[ $word == -* ]] && _ropsim_words "--workload --k --size --camera --set --layers --light --rays --seed --threads --check --out --json --no-images --no-cache --help" ||
+                _ropsim_files glb gltf ;;
         geometry)
             [[ $word == -* ]] && _ropsim_words "--gpu --prepare --submission --reads --fidelity --seed --set --export --out --json --help" ||
                 _ropsim_files glb gltf ;;

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <fmt/format.h>
 #include <string_view>
 
@@ -23,7 +24,8 @@ std::optional<Number> parse(std::string_view text) {
     return number;
 }
 
-void parse_size(const std::string& text, reports::ComparisonRequest& request) {
+template <class Request>
+void parse_size(const std::string& text, Request& request) {
     const auto size = reports::frame_size(text);
     if (!size)
         throw sim::InputError(fmt::format("--size: expected WIDTHxHEIGHT with 1 to {} pixels each, got '{}'",
@@ -46,6 +48,13 @@ std::uint64_t parse_seed(const std::string& text) {
     return *seed;
 }
 
+std::uint32_t parse_count(std::string_view option, const std::string& text, std::uint32_t most) {
+    const auto number = parse<std::uint32_t>(text);
+    if (!number || *number < 1 || *number > most)
+        throw sim::InputError(fmt::format("{}: expected 1 to {}, got '{}'", option, most, text));
+    return *number;
+}
+
 std::vector<std::string> split(std::string_view text, std::string_view option) {
     std::vector<std::string> names;
     for (std::size_t begin = 0; begin <= text.size();) {
@@ -66,6 +75,19 @@ E parse_choice(std::string_view option, const std::string& text) {
         throw sim::InputError(fmt::format("{}: expected one of {}; got '{}'{}", option, fmt::join(names, ", "), text,
                                           sim::did_you_mean(text, {names.begin(), names.end()})));
     return static_cast<E>(found - names.begin());
+}
+
+std::optional<reports::SquareLight> parse_light(const std::string& text) {
+    if (text.empty()) return std::nullopt;
+    std::vector<double> numbers;
+    for (const std::string& part : split(text, "--light"))
+        if (const auto number = parse<double>(part); number && std::isfinite(*number)) numbers.push_back(*number);
+    if (numbers.size() != 9)
+        throw sim::InputError(fmt::format("--light: expected nine numbers: centre x,y,z and two half edges x,y,z each; "
+                                          "got '{}'",
+                                          text));
+    const auto vector = [&](std::size_t i) { return glm::dvec3(numbers[i], numbers[i + 1], numbers[i + 2]); };
+    return reports::SquareLight{vector(0), vector(3), vector(6)};
 }
 
 std::vector<std::string> parse_designs(std::string_view text) {
@@ -98,6 +120,30 @@ reports::ComparisonRequest request_of(const FrameOptions& options, const std::st
             request.gpu_settings.push_back(setting);
     request.seed = parse_seed(options.seed);
     if (!options.threads.empty()) request.threads = parse_threads(options.threads);
+    return request;
+}
+
+reports::TruthRequest request_of(const TruthCommand& command) {
+    constexpr std::uint32_t most_rays = 1'000'000;
+    reports::TruthRequest request;
+    request.scene = command.scene;
+    request.camera = command.camera;
+    request.workload = command.workload;
+    parse_size(command.size, request);
+    if (!command.k.empty()) request.workload_settings.push_back("k=" + command.k);
+    constexpr std::string_view workload = "workload.";
+    for (const std::string& setting : command.settings) {
+        if (!setting.starts_with(workload))
+            throw sim::InputError(fmt::format("--set: expected workload.KEY=VALUE, got '{}'", setting));
+        request.workload_settings.push_back(setting.substr(workload.size()));
+    }
+    request.plan.layers = parse_count("--layers", command.layers, 64);
+    request.plan.light = parse_light(command.light);
+    request.plan.sampling.rays = parse_count("--rays", command.rays, most_rays);
+    request.plan.sampling.seed = parse_seed(command.seed);
+    if (!command.threads.empty()) request.threads = parse_threads(command.threads);
+    request.check = command.check;
+    request.use_cache = !command.no_cache;
     return request;
 }
 

@@ -4,6 +4,7 @@
 #include "reports/comparison.hpp"
 #include "reports/geometry/advice.hpp"
 #include "reports/peeling/validation.hpp"
+#include "reports/truth/truth_run.hpp"
 
 #include <optional>
 #include <string>
@@ -66,6 +67,25 @@ struct GeometryCommand {
     bool json = false;
 };
 
+struct TruthCommand {
+    std::string scene;
+    std::string workload = "transparency";
+    std::string k;
+    std::string size = "512x512";
+    std::string camera = "auto";
+    std::vector<std::string> settings; ///< of --set
+    std::string layers = "8";
+    std::string light; ///< nine numbers; empty: none
+    std::string rays = "1000";
+    std::string seed = "1";
+    std::string threads;
+    std::string directory; ///< of --out
+    bool check = false;
+    bool json = false;
+    bool no_images = false;
+    bool no_cache = false;
+};
+
 /// validate, calibrate and study: what to do it with, and on which GPUs.
 struct MeasureCommand {
     std::string target;
@@ -87,12 +107,14 @@ struct ShowText {
     std::string text;
 };
 
-using Command = std::variant<CompareCommand, RunCommand, GeometryCommand, ValidateCommand, CalibrateCommand,
-                             StudyCommand, DescribeCommand, ShowText>;
+using Command = std::variant<CompareCommand, RunCommand, TruthCommand, GeometryCommand, ValidateCommand,
+                             CalibrateCommand, StudyCommand, DescribeCommand, ShowText>;
 
 /// The request that the options stand for; for `designs` see CompareCommand. Throws sim::InputError when a number or
 /// size is none.
 reports::ComparisonRequest request_of(const FrameOptions& options, const std::string& designs);
+
+reports::TruthRequest request_of(const TruthCommand& command);
 
 /// The same for geometry feed.
 reports::GeometryRequest request_of(const GeometryCommand& command);

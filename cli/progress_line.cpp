@@ -17,13 +17,15 @@ using reports::Progress;
 
 constexpr auto quiet = std::chrono::milliseconds(500);
 constexpr auto interval = std::chrono::milliseconds(200);
-constexpr std::array<const char*, 6> phase_texts{
-    "reading the scene", "shading", "computing the reference", "simulating", "writing the report", "measuring"};
+constexpr std::array<const char*, 7> phase_texts{
+    "reading the scene", "shading",     "computing the reference", "simulating", "writing the report",
+    "measuring",         "tracing rays"};
 
 double share_of(const Progress& progress) {
     switch (progress.phase.load()) {
     case Progress::Phase::shading:
     case Progress::Phase::measuring:
+    case Progress::Phase::tracing:
         return progress.share;
     case Progress::Phase::simulating: {
         const auto total = static_cast<double>(progress.quads_total);

@@ -8,7 +8,6 @@
 #include "pipeline/machine.hpp"
 #include "reports/numbers.hpp"
 #include "traces/camera.hpp"
-#include "traces/scene.hpp"
 #include "traces/submission.hpp"
 #include "traces/workloads.hpp"
 
@@ -51,18 +50,6 @@ void read_hardware(const ComparisonRequest& request, ComparisonInput& input) {
     input.gpu.origins = config.origins();
     models::check_design_sections(config);
     config.expect_all_used();
-}
-
-SceneFacts facts_of(const traces::Scene& scene, const std::string& camera) {
-    return {scene.name,
-            scene.hash,
-            scene.triangles,
-            scene.triangles_drawn,
-            scene.vertices,
-            scene.draws.size(),
-            scene.resources->textures.size(),
-            camera,
-            scene.notes};
 }
 
 void read_scene(const ComparisonRequest& request, ComparisonInput& input) {
@@ -181,6 +168,18 @@ std::uint64_t peak_memory() {
 }
 
 } // namespace
+
+SceneFacts facts_of(const traces::Scene& scene, const std::string& camera) {
+    return {scene.name,
+            scene.hash,
+            scene.triangles,
+            scene.triangles_drawn,
+            scene.vertices,
+            scene.draws.size(),
+            scene.resources->textures.size(),
+            camera,
+            scene.notes};
+}
 
 unsigned core_count() { return std::max(1U, std::thread::hardware_concurrency()); }
 

@@ -6,6 +6,7 @@
 #include "pipeline/reference.hpp"
 #include "reports/comparison_result.hpp"
 #include "sim/observer.hpp"
+#include "traces/scene.hpp"
 
 #include <atomic>
 #include <memory>
@@ -31,9 +32,9 @@ struct ComparisonRequest {
 
 /// How far a comparison is; written by it, read by whoever shows it.
 struct Progress {
-    enum class Phase : std::uint8_t { reading, shading, reference, simulating, writing, measuring };
+    enum class Phase : std::uint8_t { reading, shading, reference, simulating, writing, measuring, tracing };
     std::atomic<Phase> phase = Phase::reading;
-    std::atomic<double> share = 0;             ///< of the shading, or of the measurements, 0 to 1
+    std::atomic<double> share = 0;             ///< of the shading, the measurements or the rays, 0 to 1
     std::atomic<std::uint64_t> quads_done = 0; ///< of all designs together
     std::atomic<std::uint64_t> quads_total = 0;
 };
@@ -76,6 +77,9 @@ ComparisonInput prepare(const ComparisonRequest& request, const Supervision& sup
 
 /// Runs every design, several at once. Everything but `host` is the same for any number of threads.
 Comparison compare(ComparisonInput input, const Supervision& supervision = {});
+
+/// What a report says of a scene.
+SceneFacts facts_of(const traces::Scene& scene, const std::string& camera);
 
 /// The threads that 0 stands for.
 unsigned core_count();

@@ -11,7 +11,7 @@ trap 'rm -rf "$work"' EXIT
 fail() { echo "install_test: $*" >&2; exit 1; }
 
 cmake --install "$build" --prefix "$work/prefix" >"$work/install.log" || { cat "$work/install.log"; fail "cmake --install"; }
-for file in bin/ropsim lib/ropsim/ropsim_images.so share/ropsim/models/gpus/neutral.toml \
+for file in bin/ropsim lib/ropsim/ropsim_images.so lib/ropsim/ropsim_rays.so share/ropsim/models/gpus/neutral.toml \
     share/ropsim/reports/result.schema.json share/bash-completion/completions/ropsim include/ropsim/sim/channel.hpp; do
     [[ -e $work/prefix/$file ]] || fail "$file is not installed"
 done

@@ -3,7 +3,7 @@
 // Source: Bavoil 2007, section 6.1.3 (specification 004, A13). Each draw is an object with a closed surface. A pixel
 // with more than k fragments loses those behind, exits among them; reports count such pixels.
 #include "models/programs/nearest_k.hpp"
-#include "traces/workloads/csg_surface.hpp"
+#include "traces/workloads/csg_picture.hpp"
 #include "traces/workloads/methods.hpp"
 
 namespace traces {
@@ -33,34 +33,6 @@ std::string expression_of(const CsgParams& params, std::size_t draws) {
     for (std::size_t draw = 1; draw < draws; ++draw) all += fmt::format("|{}", draw);
     return all;
 }
-
-class CsgPicture final : public pipeline::Resolve {
-  public:
-    explicit CsgPicture(CsgExpression expression) : expression_(std::move(expression)) {}
-
-    std::vector<float> picture(const pipeline::Frame& frame,
-                               const pipeline::FinishedSurfaces& surfaces) const override {
-        const std::span<const float> kbuffer = surfaces.kbuffer;
-        const CsgSurface surface = csg_surface(frame, kbuffer, expression_);
-        const SurfaceImage& image = surface.image;
-        std::vector<float> picture;
-        picture.reserve(surface.objects.size() * 4);
-        for (std::uint32_t y = 0; y < image.height(); ++y)
-            for (std::uint32_t x = 0; x < image.width(); ++x) {
-                glm::vec3 colour(frame.background);
-                if (image.sees(x, y)) {
-                    const pipeline::Draw& draw = frame.draws[surface.objects[picture.size() / 4]];
-                    colour = glm::vec3(frame.resources->materials[draw.material].base_colour) *
-                             static_cast<float>(image.lambert(x, y));
-                }
-                picture.insert(picture.end(), {colour.r, colour.g, colour.b, 1.0F});
-            }
-        return picture;
-    }
-
-  private:
-    CsgExpression expression_;
-};
 
 pipeline::Frame build(const Scene& scene, const pipeline::View& view, const CsgParams& params) {
     pipeline::Frame frame = frame_of(scene, view);

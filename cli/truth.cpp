@@ -1,0 +1,34 @@
+// ropsim truth: a frame traced by rays, with no k-buffer and no limit to the fragments of a pixel.
+#include "cli/commands.hpp"
+#include "cli/console.hpp"
+#include "cli/interruption.hpp"
+#include "cli/progress_line.hpp"
+#include "reports/images.hpp"
+#include "reports/result.hpp"
+
+namespace cli {
+
+namespace {
+
+reports::TruthRun compute(const reports::TruthRequest& request) {
+    ProgressLine line;
+    return reports::run_truth(request, {&stop_requested(), line.progress(), nullptr});
+}
+
+} // namespace
+
+void truth(const TruthCommand& command) {
+    const reports::TruthRequest request = request_of(command);
+    if (!command.directory.empty() && !command.no_images) reports::require_images();
+    const reports::TruthRun run = compute(request);
+    for (const std::string& note : run.notes) complain(note);
+    std::string written;
+    if (!command.directory.empty()) {
+        const FilesInProgress keep_alive;
+        written = "\n" + reports::write_truth(run, command.directory, !command.no_images);
+    }
+    print(command.json ? reports::result_text(reports::truth_json(run))
+                       : reports::truth_text(run, terminal_style().colour) + written);
+}
+
+} // namespace cli

@@ -1,0 +1,62 @@
+// The fragments of a frame as rays find them: all of a pixel, from front to back, however many there are.
+//
+// Modelled: which draws each pass has, culling, alpha test, shading; an opaque surface hides what lies behind it.
+// Not modelled: depth formats and the coverage rule; a pixel sees what the ray through its centre meets.
+#pragma once
+
+#include "pipeline/frame.hpp"
+#include "pipeline/functional/cull_and_clip.hpp"
+#include "reports/truth/hit_shading.hpp"
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+namespace reports {
+
+/// A fragment.
+struct FrameSurface {
+    double distance = 0.0;  ///< along the view axis
+    std::uint32_t draw = 0; ///< index into Frame::draws
+    glm::vec3 colour{0.0F}; ///< as the shader gives it
+};
+
+/// What one pixel sees.
+struct PixelSurfaces {
+    std::vector<FrameSurface> layers; ///< of passes with a k-buffer, and in front of `opaque`
+    FrameSurface opaque;              ///< nearest of the passes with a depth buffer
+    bool has_opaque = false;
+    /// The ray passes a layer's or the opaque surface's edge closely, or sees one edge-on: a rasterizer, which puts
+    /// corners on a grid, may rightly see something else (specification 004, section 10.4).
+    bool doubtful = false;
+};
+
+/// Hits nearer to an edge than this, in barycentric coordinates, are doubtful; and those with a smaller |cos|.
+inline constexpr double doubtful_edge = 1e-3;
+inline constexpr float doubtful_cosine = 0.02F;
+
+class FrameSurfaces {
+  public:
+    /// All three outlive it.
+    FrameSurfaces(const pipeline::Frame& frame, const RayScene& scene, const PixelRays& rays);
+
+    /// `hits`: of the pixel's ray, nearest first. `surfaces` is overwritten.
+    void find(std::span<const RayHit> hits, std::uint32_t x, std::uint32_t y, PixelSurfaces& surfaces) const;
+
+  private:
+    enum class Role : std::uint8_t { none, layer, opaque };
+    struct DrawRole {
+        Role role = Role::none;
+        bool both_faces = false;
+    };
+    bool culled(const RayHit& hit) const;
+
+    std::vector<DrawRole> roles_;            ///< by draw
+    std::vector<pipeline::Culling> culling_; ///< by mesh, where not both faces are drawn
+    bool view_mirrors_;
+    const PixelRays& rays_;
+    HitShading shading_;
+};
+
+} // namespace reports

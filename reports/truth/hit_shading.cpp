@@ -1,0 +1,63 @@
+#include "reports/truth/hit_shading.hpp"
+
+#include "reports/truth/plane_weights.hpp"
+
+#include <cmath>
+
+namespace reports {
+
+namespace {
+
+pipeline::ShaderOptions shader_options(const pipeline::Frame& frame) {
+    return {.colours = frame.needs.colours,
+            .fragment_colour = frame.needs.fragment_colour,
+            .perspective = frame.view.projection[2][3] != 0.0F,
+            .textures = frame.needs.textures,
+            .alpha_test = frame.needs.alpha_test};
+}
+
+/// The pixel's place in its 2x2 block.
+constexpr std::uint32_t lane_of(std::uint32_t x, std::uint32_t y) { return (y & 1U) * 2 + (x & 1U); }
+
+} // namespace
+
+HitShading::HitShading(const pipeline::Frame& frame, const RayScene& scene, const PixelRays& rays)
+    : scene_(scene), rays_(rays) {
+    for (const pipeline::Draw& draw : scene.draws())
+        for (const glm::mat4& model : draw.instances)
+            shaders_.emplace_back(scene.resources(), scene.resources().geometries[draw.geometry],
+                                  scene.resources().materials[draw.material], frame.view.view * model,
+                                  shader_options(frame));
+}
+
+// Where a neighbour's ray misses the plane, or meets it behind the eye or far away, it takes the hit's own weights: no
+// footprint comes from there.
+pipeline::CornerWeights HitShading::weights(const RayHit& hit, std::uint32_t x, std::uint32_t y) const {
+    constexpr double largest = 1e6;
+    const auto u = static_cast<float>(hit.u), v = static_cast<float>(hit.v);
+    pipeline::CornerWeights weights;
+    weights.of1.fill(u);
+    weights.of2.fill(v);
+    const auto corners = scene_.corners(hit.mesh, hit.triangle);
+    for (std::uint32_t lane = 0; lane < 4; ++lane) {
+        if (lane == lane_of(x, y)) continue;
+        const WorldRay ray = rays_((x & ~1U) + (lane & 1U), (y & ~1U) + lane / 2);
+        const auto met = meet_plane(corners, ray.origin, ray.step);
+        if (!met || std::fabs(met->u) > largest || std::fabs(met->v) > largest) continue;
+        if (rays_.perspective() && met->t <= 0.0) continue;
+        weights.of1[lane] = static_cast<float>(met->u);
+        weights.of2[lane] = static_cast<float>(met->v);
+    }
+    return weights;
+}
+
+HitShading::Shaded HitShading::operator()(const RayHit& hit, std::uint32_t x, std::uint32_t y) const {
+    const pipeline::FragmentShader& shader = shaders_[hit.mesh];
+    if (!shader.needed()) return {};
+    const std::uint32_t lane = lane_of(x, y), covered = 1U << lane;
+    const auto triangle = shader.triangle(scene_.vertices(hit.mesh, hit.triangle), nullptr);
+    const auto output = shader.shade(triangle, weights(hit, x, y), covered);
+    return {output.colours[lane], output.alive != 0};
+}
+
+} // namespace reports

@@ -1,0 +1,34 @@
+// What the rasterizer's fragment shader makes of the hits of pixel rays: the same shader, with weights that come from
+// rays instead of edge functions. The footprint of a texture comes from the rays of the pixel's 2x2 block, as there.
+#pragma once
+
+#include "pipeline/frame.hpp"
+#include "pipeline/functional/shader.hpp"
+#include "reports/truth/pixel_rays.hpp"
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+namespace reports {
+
+class HitShading {
+  public:
+    /// For the colours that the frame needs. All three outlive it.
+    HitShading(const pipeline::Frame& frame, const RayScene& scene, const PixelRays& rays);
+
+    struct Shaded {
+        glm::vec4 colour{0.0F}; ///< linear RGBA; a cosine where the frame asks for it; 0 where it needs none
+        bool alive = true;      ///< not discarded by the alpha test
+    };
+    Shaded operator()(const RayHit& hit, std::uint32_t x, std::uint32_t y) const;
+
+  private:
+    pipeline::CornerWeights weights(const RayHit& hit, std::uint32_t x, std::uint32_t y) const;
+
+    const RayScene& scene_;
+    const PixelRays& rays_;
+    std::vector<pipeline::FragmentShader> shaders_; ///< by mesh
+};
+
+} // namespace reports

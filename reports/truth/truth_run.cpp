@@ -1,0 +1,107 @@
+#include "reports/truth/truth_run.hpp"
+
+#include "pipeline/functional/frame_streams.hpp"
+#include "reports/truth/truth_cache.hpp"
+#include "sim/check.hpp"
+#include "traces/camera.hpp"
+#include "traces/workloads.hpp"
+
+#include <chrono>
+
+namespace reports {
+
+namespace {
+
+class Stopwatch {
+  public:
+    double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count(); }
+
+  private:
+    std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+void enter(const Supervision& supervision, Progress::Phase phase) {
+    if (supervision.stop != nullptr && *supervision.stop) throw sim::Interrupted();
+    if (supervision.progress == nullptr) return;
+    supervision.progress->share = 0.0;
+    supervision.progress->phase = phase;
+}
+
+std::function<void(double)> share_of(const Supervision& supervision) {
+    if (supervision.progress == nullptr) return {};
+    return [progress = supervision.progress](double share) { progress->share = share; };
+}
+
+void check_light(const TruthPlan& plan) {
+    if (!plan.light) return;
+    const glm::dvec3 &u = plan.light->u, &v = plan.light->v;
+    const double lengths = glm::length(u) * glm::length(v);
+    if (!(lengths > 0.0) || std::fabs(glm::dot(u, v)) > 1e-6 * lengths)
+        throw sim::InputError("--light: expected two half edges at right angles");
+}
+
+void trace(const Supervision& supervision, TruthRun& run) {
+    enter(supervision, Progress::Phase::tracing);
+    const Stopwatch watch;
+    const RayScene scene(run.frame->resources, run.frame->draws);
+    run.build_seconds = watch.seconds();
+    run.truth = trace_truth(*run.frame, scene, run.plan, {run.threads, supervision.stop, share_of(supervision)});
+    run.tracing_seconds = watch.seconds() - run.build_seconds;
+}
+
+void trace_or_find(const TruthRequest& request, const Supervision& supervision, TruthRun& run) {
+    const auto folder = request.use_cache ? TruthCache::usual_folder() : std::nullopt;
+    if (!folder) return trace(supervision, run);
+    const TruthCache cache(*folder);
+    const std::string key = truth_key(run.scene.hash, *run.frame, request.workload_settings, run.plan);
+    TruthCache::Found found = cache.find(key);
+    run.cached = found.truth.has_value();
+    if (!found.note.empty()) run.notes.push_back(found.note);
+    if (run.cached) {
+        run.truth = std::move(*found.truth);
+        return;
+    }
+    trace(supervision, run);
+    if (const std::string note = cache.keep(key, run.truth); !note.empty()) run.notes.push_back(note);
+}
+
+void check(const Supervision& supervision, TruthRun& run) {
+    enter(supervision, Progress::Phase::shading);
+    pipeline::FrontEndOptions options;
+    options.threads = run.threads;
+    options.stop = supervision.stop;
+    options.progress = share_of(supervision);
+    const auto streams = pipeline::rasterize_frame(*run.frame, options);
+    enter(supervision, Progress::Phase::reference);
+    run.errors =
+        errors_of_reference(run.truth, *run.frame, pipeline::run_reference(*run.frame, streams, 1, run.threads));
+}
+
+} // namespace
+
+double TruthRun::rays_per_second() const {
+    const auto rays = static_cast<double>(truth.counts.pixel_rays + truth.counts.light_rays);
+    return tracing_seconds > 0.0 ? rays / tracing_seconds : 0.0;
+}
+
+TruthRun run_truth(const TruthRequest& request, const Supervision& supervision) {
+    const Stopwatch watch;
+    enter(supervision, Progress::Phase::reading);
+    check_light(request.plan);
+    traces::WorkloadOptions options;
+    for (const std::string& setting : request.workload_settings) options.set(setting);
+    const traces::Scene scene = traces::load_scene(request.scene);
+    const pipeline::View view = traces::make_view(scene, request.camera, request.width, request.height);
+    TruthRun run;
+    run.frame = std::make_shared<const pipeline::Frame>(traces::build_frame(scene, view, request.workload, options));
+    check_truth(*run.frame);
+    run.scene = facts_of(scene, request.camera);
+    run.plan = request.plan;
+    run.threads = request.threads == 0 ? core_count() : request.threads;
+    trace_or_find(request, supervision, run);
+    if (request.check) check(supervision, run);
+    run.seconds = watch.seconds();
+    return run;
+}
+
+} // namespace reports

@@ -68,6 +68,11 @@ constexpr const char* describe_help = R"(Examples:
   ropsim describe scoreboard           one design (GPU, workload, generator, program, parameter, stage)
   ropsim describe --names designs      names only, one a line)";
 
+constexpr const char* accuracy_help = R"(Examples:
+  ropsim accuracy scene.glb+ground --workload soft-shadows --out accuracy
+  ropsim accuracy scene.glb --workload transparency --sweep k=1,2,4,8,16
+  ropsim accuracy scene.glb+ground --workload soft-shadows --sweep layers=1,2,3 --sweep samples=169,441)";
+
 void add_frame_options(CLI::App& command, FrameOptions& options) {
     command
         .add_option("scene", options.scene,
@@ -118,7 +123,7 @@ void add_truth(CLI::App& command, TruthCommand& options) {
         ->type_name("SCENE");
     command
         .add_option("--workload", options.workload,
-                    "Rendering method: transparency, translucency, csg or opaque (default transparency)")
+                    "Rendering method: transparency, translucency, csg, opaque or soft-shadows (default transparency)")
         ->type_name("NAME");
     command.add_option("--k", options.k, "Entries per pixel of the k-buffer that --check compares")->type_name("K");
     command.add_option("--size", options.size, "Pixels of the frame (default 512x512)")->type_name("WxH");
@@ -151,6 +156,33 @@ void add_truth(CLI::App& command, TruthCommand& options) {
     command.add_flag("--no-cache", options.no_cache,
                      "Neither look for an earlier run's rays in ~/.cache/ropsim nor keep these there");
     command.footer(truth_help);
+}
+
+void add_accuracy(CLI::App& command, AccuracyCommand& options) {
+    add_frame_options(command, options.frame);
+    command.add_option("--design", options.design, "Design that runs the frames (default multipass)")
+        ->type_name("NAME");
+    command
+        .add_option("--sweep", options.sweep,
+                    "Values of a parameter of the workload to try; repeated: every combination (default: each knob of "
+                    "the workload alone)")
+        ->type_name("KNOB=VALUES")
+        ->allow_extra_args(false)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    command.add_option("--rays", options.rays, "Rays of the truth to the light from each point (default 1000)")
+        ->type_name("N");
+    command
+        .add_option("--averaged", options.averaged,
+                    "Also the mean of 4, 16, 64 ... hard shadows, up to N (soft-shadows)")
+        ->type_name("N");
+    command.add_option("--out", options.output.directory, "Folder for accuracy.json, a table and report.html")
+        ->type_name("DIR");
+    command.add_flag("--json", options.output.json, "Print one JSON document on standard output, and nothing else");
+    command.add_flag("--no-images", options.output.no_images,
+                     "Do not count the pixels that a viewer tells apart (OpenImageIO is not loaded)");
+    command.add_flag("--no-cache", options.no_cache,
+                     "Neither look for an earlier run's rays in ~/.cache/ropsim nor keep these there");
+    command.footer(accuracy_help);
 }
 
 void add_geometry(CLI::App& command, GeometryCommand& options) {
@@ -232,6 +264,7 @@ struct Parser {
 
         add_truth(*app.add_subcommand("truth", "A frame by ray tracing, with any number of fragments per pixel"),
                   truth);
+        add_accuracy(*app.add_subcommand("accuracy", "A rendering method's error beside its run time"), accuracy);
         add_geometry(*app.add_subcommand("geometry", "What limits the geometry feed of a scene, and what helps"),
                      geometry);
 
@@ -277,6 +310,7 @@ struct Parser {
     CompareCommand compare;
     RunCommand run;
     TruthCommand truth;
+    AccuracyCommand accuracy;
     GeometryCommand geometry;
     ValidateCommand validate;
     CalibrateCommand calibrate;
@@ -353,6 +387,7 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
     if (app.got_subcommand("compare")) return parser.compare;
     if (app.got_subcommand("run")) return parser.run;
     if (app.got_subcommand("truth")) return parser.truth;
+    if (app.got_subcommand("accuracy")) return parser.accuracy;
     if (app.got_subcommand("geometry")) return parser.geometry;
     if (app.got_subcommand("validate")) return parser.validate;
     if (app.got_subcommand("calibrate")) return parser.calibrate;

@@ -8,6 +8,7 @@ namespace cli {
 void compare(const CompareCommand& command);
 void run(const RunCommand& command);
 void truth(const TruthCommand& command);
+void accuracy(const AccuracyCommand& command);
 void geometry(const GeometryCommand& command);
 void validate(const ValidateCommand& command);
 void calibrate(const CalibrateCommand& command);

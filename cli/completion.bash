@@ -30,7 +30,7 @@ _ropsim() {
     local frame="--gpu --workload --k --entry --program --size --camera --seed --threads --set --out --json --no-images --help"
     COMPREPLY=()
     if ((COMP_CWORD == 1)); then
-        _ropsim_words "compare run truth geometry validate calibrate study describe --help --version"
+        _ropsim_words "compare run truth accuracy geometry validate calibrate study describe --help --version"
         return
     fi
     case $before in
@@ -50,7 +50,7 @@ _ropsim() {
         --fidelity) _ropsim_words "estimate detailed"; return ;;
         --export) _ropsim_files glb; return ;;
         --out | --write) mapfile -t COMPREPLY < <(compgen -d -- "$word"); compopt -o filenames; return ;;
-        --k | --seed | --threads | --layers | --light | --rays) return ;;
+        --k | --seed | --threads | --layers | --light | --rays | --sweep | --averaged) return ;;
     esac
     local measure="--gpus --fidelity --threads --json --help"
     case $command in
@@ -59,6 +59,8 @@ _ropsim() {
         truth)
             [[ $word == -* ]] && _ropsim_words "--workload --k --size --camera --set --layers --light --rays --seed --threads --check --out --json --no-images --no-cache --help" ||
                 _ropsim_files glb gltf ;;
+        accuracy)
+            [[ $word == -* ]] && _ropsim_words "--design --sweep --rays --averaged --no-cache $frame" || _ropsim_files glb gltf ;;
         geometry)
             [[ $word == -* ]] && _ropsim_words "--gpu --prepare --submission --reads --fidelity --seed --set --export --out --json --help" ||
                 _ropsim_files glb gltf ;;

@@ -16,6 +16,7 @@ struct Dispatch {
     void operator()(const cli::CompareCommand& command) const { cli::compare(command); }
     void operator()(const cli::RunCommand& command) const { cli::run(command); }
     void operator()(const cli::TruthCommand& command) const { cli::truth(command); }
+    void operator()(const cli::AccuracyCommand& command) const { cli::accuracy(command); }
     void operator()(const cli::GeometryCommand& command) const { cli::geometry(command); }
     void operator()(const cli::ValidateCommand& command) const { cli::validate(command); }
     void operator()(const cli::CalibrateCommand& command) const { cli::calibrate(command); }

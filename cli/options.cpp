@@ -147,6 +147,26 @@ reports::TruthRequest request_of(const TruthCommand& command) {
     return request;
 }
 
+reports::AccuracyRequest request_of(const AccuracyCommand& command) {
+    constexpr std::uint32_t most_rays = 1'000'000, most_lights = 4096;
+    reports::AccuracyRequest request;
+    request.comparison = request_of(command.frame, command.design);
+    if (request.comparison.designs.size() != 1)
+        throw sim::InputError(fmt::format("--design: expected one design, got '{}'", command.design));
+    for (const std::string& sweep : command.sweep) {
+        const std::size_t equals = sweep.find('=');
+        if (equals == 0 || equals == std::string::npos)
+            throw sim::InputError(fmt::format("--sweep: expected KNOB=VALUE,VALUE..., got '{}'", sweep));
+        request.sweep.push_back({sweep.substr(0, equals), split(sweep.substr(equals + 1), "--sweep")});
+    }
+    request.sampling.rays = parse_count("--rays", command.rays, most_rays);
+    request.sampling.seed = request.comparison.seed;
+    if (!command.averaged.empty()) request.averaged = parse_count("--averaged", command.averaged, most_lights);
+    request.perceptual = !command.output.no_images;
+    request.use_cache = !command.no_cache;
+    return request;
+}
+
 reports::GeometryRequest request_of(const GeometryCommand& command) {
     reports::GeometryRequest request;
     request.experiment.scene = command.scene;

@@ -1,6 +1,7 @@
 // What the user typed, parsed but not yet checked against what there is.
 #pragma once
 
+#include "reports/accuracy/accuracy.hpp"
 #include "reports/comparison.hpp"
 #include "reports/geometry/advice.hpp"
 #include "reports/peeling/validation.hpp"
@@ -86,6 +87,16 @@ struct TruthCommand {
     bool no_cache = false;
 };
 
+struct AccuracyCommand {
+    FrameOptions frame;
+    OutputOptions output; ///< no_images: no picture is compared as a viewer would
+    std::string design = "multipass";
+    std::vector<std::string> sweep; ///< KNOB=VALUE,VALUE
+    std::string rays = "1000";
+    std::string averaged; ///< number of lights; empty: none
+    bool no_cache = false;
+};
+
 /// validate, calibrate and study: what to do it with, and on which GPUs.
 struct MeasureCommand {
     std::string target;
@@ -107,14 +118,15 @@ struct ShowText {
     std::string text;
 };
 
-using Command = std::variant<CompareCommand, RunCommand, TruthCommand, GeometryCommand, ValidateCommand,
-                             CalibrateCommand, StudyCommand, DescribeCommand, ShowText>;
+using Command = std::variant<CompareCommand, RunCommand, TruthCommand, AccuracyCommand, GeometryCommand,
+                             ValidateCommand, CalibrateCommand, StudyCommand, DescribeCommand, ShowText>;
 
 /// The request that the options stand for; for `designs` see CompareCommand. Throws sim::InputError when a number or
 /// size is none.
 reports::ComparisonRequest request_of(const FrameOptions& options, const std::string& designs);
 
 reports::TruthRequest request_of(const TruthCommand& command);
+reports::AccuracyRequest request_of(const AccuracyCommand& command);
 
 /// The same for geometry feed.
 reports::GeometryRequest request_of(const GeometryCommand& command);

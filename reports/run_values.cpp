@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 
 namespace reports {
 
@@ -29,6 +30,41 @@ RunValues::RunValues(const Comparison& comparison, std::size_t run) {
     for (const auto& [path, leaf] : flatten(document.at("designs").at(run)))
         if (leaf.is_number()) numbers_[path] = leaf.get<double>();
     read_picture(comparison, run);
+    read_passes(comparison, comparison.runs.at(run));
+}
+
+// "light layer 2" is a part of the frame's pass "light".
+void RunValues::read_passes(const Comparison& comparison, const pipeline::RunResult& run) {
+    const double milliseconds_per_cycle = run.core_mhz > 0.0 ? 1.0 / (run.core_mhz * 1000.0) : 0.0;
+    for (const pipeline::Pass& pass : comparison.frame->passes) {
+        if (pass.kind != pipeline::PassKind::draw) continue;
+        double cycles = 0, bytes = 0;
+        for (const pipeline::PassResult& part : run.passes) {
+            if (part.name != pass.name && !part.name.starts_with(pass.name + " ")) continue;
+            cycles += static_cast<double>(part.cycles);
+            for (const auto& [path, leaf] : flatten(part.counters))
+                if (path.starts_with("memory.bytes.")) bytes += leaf.get<double>();
+        }
+        const auto write = [&](const std::string& prefix) {
+            const double ms = cycles * milliseconds_per_cycle;
+            numbers_[prefix + "ms"] = ms;
+            numbers_[prefix + "share"] = run.cycles == 0 ? 0.0 : cycles / static_cast<double>(run.cycles);
+            numbers_[prefix + "dram_mb"] = bytes / 1e6;
+            if (ms > 0.0)
+                numbers_[prefix + "mtriangles_per_s"] =
+                    static_cast<double>(comparison.scene.triangles_drawn) / ms / 1e3;
+        };
+        write(fmt::format("pass.{}.", pass.name));
+        if (!pass.kbuffer) continue;
+        write("kbuffer.");
+        const double layers = comparison.frame->program->k();
+        const double ms = numbers_["kbuffer.ms"];
+        numbers_["kbuffer.ms_per_layer"] = ms / layers;
+        numbers_["kbuffer.dram_mb_per_layer"] = bytes / 1e6 / layers;
+        if (ms > 0.0)
+            numbers_["kbuffer.mtexels_per_s"] =
+                layers * static_cast<double>(comparison.frame->view_of_kbuffer().pixels()) / ms / 1e3;
+    }
 }
 
 void RunValues::read_picture(const Comparison& comparison, std::size_t run) {

@@ -16,6 +16,10 @@ namespace reports {
 ///   wrong_share         pixels that differ from the reference, over pixels that anything was drawn on
 ///   colour_error        mean difference of their red, green and blue to the reference, linear, 0 to 1
 ///   colour_error_worst  the largest difference of a channel of a pixel
+///   pass.NAME.VALUE     of a pass of the frame, over all passes that the design makes of it: ms, share (of the frame's
+///                       cycles), dram_mb, mtriangles_per_s (of the scene, in the time of the pass)
+///   kbuffer.VALUE       of the pass that fills the k-buffer: the same, mtexels_per_s (entries captured in its time),
+///                       ms_per_layer and dram_mb_per_layer
 class RunValues {
   public:
     RunValues(const Comparison& comparison, std::size_t run);
@@ -27,6 +31,7 @@ class RunValues {
   private:
     std::optional<double> number(const std::string& name) const;
     void read_picture(const Comparison& comparison, std::size_t run);
+    void read_passes(const Comparison& comparison, const pipeline::RunResult& run);
 
     std::map<std::string, double> numbers_;
 };

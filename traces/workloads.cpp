@@ -41,6 +41,11 @@ pipeline::Frame kbuffer_frame(pipeline::Frame frame, pipeline::FragmentColour co
     return graph.lower();
 }
 
+void as_text(WorkloadOptions& options, const std::string& name) {
+    const auto found = options.values.find(name);
+    if (found != options.values.end() && found->is_number()) *found = found->dump();
+}
+
 void as_list(WorkloadOptions& options, const std::string& name) {
     const auto found = options.values.find(name);
     if (found != options.values.end() && found->is_number()) *found = nlohmann::ordered_json::array({*found});
@@ -48,13 +53,15 @@ void as_list(WorkloadOptions& options, const std::string& name) {
 
 pipeline::Frame build_frame(const Scene& scene, const pipeline::View& view, const std::string& workload,
                             const WorkloadOptions& options) {
+    pipeline::Frame frame = workload_named(workload).build(scene, view, options);
+    frame.workload = workload;
+    return frame;
+}
+
+const Workload& workload_named(const std::string& workload) {
     std::vector<std::string> known;
     for (const Workload& one : workloads()) {
-        if (one.id == workload) {
-            pipeline::Frame frame = one.build(scene, view, options);
-            frame.workload = workload;
-            return frame;
-        }
+        if (one.id == workload) return one;
         known.push_back(one.id);
     }
     throw sim::InputError(fmt::format("workload: expected one of {}, got '{}'{}", fmt::join(known, ", "), workload,

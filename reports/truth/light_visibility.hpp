@@ -16,11 +16,7 @@
 
 namespace reports {
 
-/// The points centre + a * u + b * v with a and b in [-1,1], in world space; u and v are orthogonal.
-struct SquareLight {
-    glm::dvec3 centre{0.0};
-    glm::dvec3 u{0.0}, v{0.0}; ///< half edges
-};
+using pipeline::SquareLight;
 
 struct LightSampling {
     std::uint32_t rays = 1000; ///< for each point, at least 1

@@ -49,11 +49,12 @@ void trace(const Supervision& supervision, TruthRun& run) {
     run.tracing_seconds = watch.seconds() - run.build_seconds;
 }
 
-void trace_or_find(const TruthRequest& request, const Supervision& supervision, TruthRun& run) {
+void trace_or_find(const TruthRequest& request, const std::vector<std::string>& settings,
+                   const Supervision& supervision, TruthRun& run) {
     const auto folder = request.use_cache ? TruthCache::usual_folder() : std::nullopt;
     if (!folder) return trace(supervision, run);
     const TruthCache cache(*folder);
-    const std::string key = truth_key(run.scene.hash, *run.frame, request.workload_settings, run.plan);
+    const std::string key = truth_key(run.scene.hash, *run.frame, settings, run.plan);
     TruthCache::Found found = cache.find(key);
     run.cached = found.truth.has_value();
     if (!found.note.empty()) run.notes.push_back(found.note);
@@ -94,11 +95,17 @@ TruthRun run_truth(const TruthRequest& request, const Supervision& supervision) 
     const pipeline::View view = traces::make_view(scene, request.camera, request.width, request.height);
     TruthRun run;
     run.frame = std::make_shared<const pipeline::Frame>(traces::build_frame(scene, view, request.workload, options));
+    run.plan = request.plan;
+    bool settings_matter = true;
+    if (run.frame->light) { // what is lit follows from the surfaces that the eye sees, whatever the shadows' method
+        if (!run.plan.light) run.plan.light = run.frame->light;
+        run.frame = std::make_shared<const pipeline::Frame>(traces::build_frame(scene, view, "opaque"));
+        settings_matter = false;
+    }
     check_truth(*run.frame);
     run.scene = facts_of(scene, request.camera);
-    run.plan = request.plan;
     run.threads = request.threads == 0 ? core_count() : request.threads;
-    trace_or_find(request, supervision, run);
+    trace_or_find(request, settings_matter ? request.workload_settings : std::vector<std::string>{}, supervision, run);
     if (request.check) check(supervision, run);
     run.seconds = watch.seconds();
     return run;

@@ -27,6 +27,7 @@ const std::vector<Case> cases{
     {"volume", "gen:tetrahedra?n=4", {}, false, false},
     {"particles", "gen:particles?n=3000", {}, false},
     {"particles", "gen:particles?n=3000", {"method=layers"}},
+    {"soft-shadows", "gen:blob?triangles=2000+ground", {"map_size=64"}},
 };
 
 std::string name_of(const Case& one) { return one.workload + " " + (one.knobs.empty() ? "" : one.knobs[0]); }

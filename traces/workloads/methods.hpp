@@ -29,7 +29,8 @@ Workload make_workload(std::string id, std::string summary, Build build) {
     return {std::move(id), std::move(summary), sim::describe<P>(),
             [place, build](const Scene& scene, const pipeline::View& view, const WorkloadOptions& options) {
                 return build(scene, view, read_parameters<P>(options.values, place));
-            }};
+            },
+            {}};
 }
 
 /// What frames of all workloads have in common: the scene with all its draws, seen through `view`.
@@ -38,6 +39,9 @@ pipeline::Frame frame_of(const Scene& scene, const pipeline::View& view);
 /// The graph of the methods that do nothing but fill a k-buffer: clear, all draws with both faces through the frame's
 /// program, and the picture that its resolve makes.
 pipeline::Frame kbuffer_frame(pipeline::Frame frame, pipeline::FragmentColour colour = pipeline::FragmentColour::lit);
+
+/// Makes a text of a parameter that may be a number.
+void as_text(WorkloadOptions& options, const std::string& name);
 
 /// Makes a list of one of a parameter that may be a number or a list of numbers.
 void as_list(WorkloadOptions& options, const std::string& name);

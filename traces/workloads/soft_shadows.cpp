@@ -266,6 +266,7 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const Soft
     pipeline::Frame frame = frame_of(scene, view);
     frame.program = models::make_nearest_k(models::EntryKind::z, params.k);
     frame.kbuffer_view = light.view(params.map_size);
+    frame.light = {light.centre, light.right * (light.width / 2.0), light.up * (light.width / 2.0)};
     const auto picture = std::make_shared<const ShadowPicture>(light, params);
     frame.resolve = picture;
     frame.depth_format = pipeline::DepthFormat::d32f;
@@ -287,7 +288,7 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const Soft
     graph.add_clear("clear k-buffer", {kbuffer_surface});
     graph.add_draw("light", {}, {kbuffer_surface}, std::move(from_light), true);
     graph.add_clear("clear", {depth_surface, colour_surface});
-    graph.add_draw("eye", {depth_surface}, {depth_surface, colour_surface}, std::move(eye), true);
+    graph.add_draw("eye", {depth_surface}, {depth_surface, colour_surface}, std::move(eye));
     graph.write_targets(2); // colours, and positions
     graph.add_resolve("shadows", {kbuffer_surface, depth_surface, colour_surface}, {picture_surface});
     graph.output(picture_surface);
@@ -302,8 +303,20 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const Soft
 } // namespace
 
 Workload soft_shadows_workload() {
-    return make_workload<SoftShadowParams>(
+    Workload workload = make_workload<SoftShadowParams>(
         "soft-shadows", "shadows of a square light from a layered shadow map, captured by a k-buffer", build);
+    workload.build = [build = std::move(workload.build)](const Scene& scene, const pipeline::View& view,
+                                                         WorkloadOptions options) {
+        as_text(options, "light");
+        return build(scene, view, options);
+    };
+    return std::move(workload).with({{"layers", {"1", "2", "3"}},
+                                     {"map_size", {"256", "512", "1024", "2048"}},
+                                     {"samples", {"9", "49", "169", "289", "441", "961", "1089"}},
+                                     {"iterations", {"0", "1", "2"}},
+                                     {"gscale", {"0", "1", "4", "10"}},
+                                     {"format", {"rgba16f", "rgba32f"}},
+                                     {"method", {"layered", "hard", "pcf"}}});
 }
 
 } // namespace traces

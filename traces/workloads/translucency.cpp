@@ -77,7 +77,7 @@ Workload translucency_workload() {
         as_list(options, "sigma");
         return build(scene, view, options);
     };
-    return workload;
+    return std::move(workload).with({{"k", {"2", "4", "8", "16", "32"}}});
 }
 
 } // namespace traces

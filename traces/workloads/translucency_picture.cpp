@@ -54,8 +54,8 @@ TranslucencyPicture::Passage TranslucencyPicture::passage(std::span<const Transl
 }
 
 std::vector<float> TranslucencyPicture::picture(const pipeline::Frame& frame,
-                                                const pipeline::FinishedSurfaces& surfaces) const {
-    const std::span<const float> kbuffer = surfaces.kbuffer;
+                                                const pipeline::FinishedSurfaces& finished) const {
+    const std::span<const float> kbuffer = finished.kbuffer;
     const ViewRays rays(frame.view);
     const std::size_t floats = frame.program->floats_per_pixel();
     std::vector<TranslucentSurface> surfaces;

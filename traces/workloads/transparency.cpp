@@ -133,7 +133,9 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const Tran
 
 Workload transparency_workload() {
     return make_workload<TransparencyParams>(
-        "transparency", "the k nearest fragments of each pixel, composited front to back with one opacity", build);
+               "transparency", "the k nearest fragments of each pixel, composited front to back with one opacity",
+               build)
+        .with({{"k", {"1", "2", "4", "8", "16", "32"}}});
 }
 
 } // namespace traces

@@ -1,0 +1,33 @@
+// ropsim accuracy: a rendering method's error beside its run time, as its quality knobs turn.
+#include "reports/accuracy/accuracy.hpp"
+#include "cli/commands.hpp"
+#include "cli/console.hpp"
+#include "cli/interruption.hpp"
+#include "cli/measuring.hpp"
+#include "cli/progress_line.hpp"
+#include "reports/result.hpp"
+
+namespace cli {
+
+namespace {
+
+reports::Accuracy measure(const reports::AccuracyRequest& request) {
+    ProgressLine line;
+    return reports::measure_accuracy(request, {&stop_requested(), line.progress(), nullptr});
+}
+
+} // namespace
+
+void accuracy(const AccuracyCommand& command) {
+    const reports::Accuracy result = measure(request_of(command));
+    for (const std::string& note : result.notes) complain(note);
+    const auto document = reports::accuracy_json(result);
+    std::string written;
+    if (!command.output.directory.empty())
+        written = "\n" + write_tables(command.output.directory, "accuracy.json", document,
+                                      {reports::accuracy_table(result)}, reports::accuracy_page(result));
+    print(command.output.json ? reports::result_text(document)
+                              : reports::accuracy_text(result, terminal_style()) + written);
+}
+
+} // namespace cli

@@ -1,0 +1,170 @@
+#include "reports/accuracy/accuracy.hpp"
+
+#include "reports/accuracy/averaged_shadows.hpp"
+#include "reports/images.hpp"
+#include "sim/check.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace reports {
+
+namespace {
+
+using Knobs = std::vector<std::string>;
+
+// Every combination of the values, the last knob turning fastest.
+std::vector<Knobs> combinations(const std::vector<traces::QualityKnob>& sweep) {
+    std::vector<Knobs> result{{}};
+    for (const traces::QualityKnob& knob : sweep) {
+        std::vector<Knobs> longer;
+        for (const Knobs& begun : result)
+            for (const std::string& value : knob.values) {
+                longer.push_back(begun);
+                longer.back().push_back(fmt::format("{}={}", knob.parameter, value));
+            }
+        result = std::move(longer);
+    }
+    return result;
+}
+
+bool is_set(const std::vector<std::string>& settings, const std::string& knob) {
+    for (const std::string& setting : settings)
+        if (setting.starts_with(knob + "=")) return true;
+    return false;
+}
+
+// The shared settings as they are, and each knob alone.
+std::vector<Knobs> one_at_a_time(const traces::Workload& workload, const std::vector<std::string>& settings) {
+    std::vector<Knobs> result{{}};
+    for (const traces::QualityKnob& knob : workload.quality)
+        if (!is_set(settings, knob.parameter))
+            for (const std::string& value : knob.values)
+                result.push_back({fmt::format("{}={}", knob.parameter, value)});
+    return result;
+}
+
+std::vector<Knobs> plan(const AccuracyRequest& request) {
+    const traces::Workload& workload = traces::workload_named(request.comparison.workload);
+    if (workload.quality.empty())
+        throw sim::InputError(
+            fmt::format("accuracy: expected a workload with a truth and knobs of quality, got '{}'", workload.id));
+    if (request.sweep.empty()) return one_at_a_time(workload, request.comparison.workload_settings);
+    for (const traces::QualityKnob& knob : request.sweep)
+        if (is_set(request.comparison.workload_settings, knob.parameter))
+            throw sim::InputError(fmt::format("--sweep: '{}' is set for all points, too", knob.parameter));
+    return combinations(request.sweep);
+}
+
+TruthRun truth_of(const AccuracyRequest& request, const Supervision& supervision) {
+    const ComparisonRequest& comparison = request.comparison;
+    TruthRequest truth;
+    truth.scene = comparison.scene;
+    truth.camera = comparison.camera;
+    truth.width = comparison.width;
+    truth.height = comparison.height;
+    truth.workload = comparison.workload;
+    truth.workload_settings = comparison.workload_settings;
+    truth.plan.layers = 1; // pictures are made from all
+    truth.plan.sampling = request.sampling;
+    truth.use_cache = request.use_cache;
+    truth.threads = comparison.threads;
+    return run_truth(truth, supervision);
+}
+
+std::vector<float> with_visibility(const Truth& truth) {
+    std::vector<float> picture(truth.visibility.size() * 4, 1.0F);
+    for (std::size_t pixel = 0; pixel < truth.visibility.size(); ++pixel)
+        std::fill_n(&picture[4 * pixel], 4, truth.visibility[pixel]);
+    return picture;
+}
+
+// What a viewer sees of it: the light alone, in grey, or the colours.
+ImageError error_of(const AccuracyRequest& request, const FramePixels& pixels, const pipeline::Frame& frame,
+                    const Truth& truth) {
+    ImageError error;
+    if (frame.light) {
+        const auto mask = inner_pixels(frame.view, pixels.depth);
+        error = shadow_error(pixels.composite, truth.visibility, mask);
+        if (!request.perceptual) return error;
+        std::vector<float> seen(pixels.composite.size()), meant = with_visibility(truth);
+        for (std::size_t pixel = 0; pixel < mask.size(); ++pixel)
+            std::fill_n(&seen[4 * pixel], 4, mask[pixel] != 0 ? pixels.composite[4 * pixel + 3] : meant[4 * pixel]);
+        error.visible = visibly_different(frame.view.width, frame.view.height, seen, meant);
+        return error;
+    }
+    error = picture_error(pixels.composite, truth);
+    if (request.perceptual)
+        error.visible = visibly_different(frame.view.width, frame.view.height, pixels.composite, truth.colours);
+    return error;
+}
+
+AccuracyPoint point_of(const AccuracyRequest& request, const Knobs& knobs, const Truth& truth,
+                       const Supervision& supervision) {
+    ComparisonRequest one = request.comparison;
+    one.workload_settings.insert(one.workload_settings.end(), knobs.begin(), knobs.end());
+    const Comparison comparison = compare(prepare(one, supervision), supervision);
+    const pipeline::RunResult& run = comparison.runs.front();
+    AccuracyPoint point;
+    point.knobs = knobs;
+    point.sim_ms = static_cast<double>(run.cycles) / (run.core_mhz * 1000.0);
+    point.host_s = run.host_seconds + comparison.host.front_end_seconds;
+    point.wrong_pixels = run.wrong_pixels;
+    point.error = error_of(request, comparison.pixels.front(), *comparison.frame, truth);
+    return point;
+}
+
+void add_averages(const AccuracyRequest& request, const Truth& truth, const Supervision& supervision,
+                  std::vector<AccuracyPoint>& points) {
+    for (const AveragedShadows& averaged : average_hard_shadows(request, supervision)) {
+        AccuracyPoint point;
+        point.knobs = {fmt::format("averaged={}", averaged.lights)};
+        point.sim_ms = averaged.sim_ms;
+        point.host_s = averaged.host_s;
+        point.error = error_of(request, averaged.pixels, *averaged.frame, truth);
+        points.push_back(std::move(point));
+    }
+}
+
+bool beats(double time, double error, double other_time, double other_error) {
+    return time <= other_time && error <= other_error && (time < other_time || error < other_error);
+}
+
+} // namespace
+
+void mark_pareto(std::vector<AccuracyPoint>& points) {
+    for (AccuracyPoint& point : points) {
+        point.pareto = point.pareto_host = true;
+        for (const AccuracyPoint& other : points) {
+            if (beats(other.sim_ms, other.error.rmse, point.sim_ms, point.error.rmse)) point.pareto = false;
+            if (beats(other.host_s, other.error.rmse, point.host_s, point.error.rmse)) point.pareto_host = false;
+        }
+    }
+}
+
+Accuracy measure_accuracy(const AccuracyRequest& request, const Supervision& supervision) {
+    const std::vector<Knobs> points = plan(request);
+    if (request.perceptual) require_images();
+    Accuracy accuracy;
+    TruthRun truth = truth_of(request, supervision);
+    accuracy.workload = request.comparison.workload;
+    accuracy.design = request.comparison.designs.front();
+    accuracy.gpu = request.comparison.gpu;
+    accuracy.scene = std::move(truth.scene);
+    accuracy.width = request.comparison.width;
+    accuracy.height = request.comparison.height;
+    accuracy.settings = request.comparison.workload_settings;
+    accuracy.notes = std::move(truth.notes);
+    accuracy.truth_seconds = truth.seconds;
+    accuracy.truth_cached = truth.cached;
+    if (truth.plan.light) {
+        const std::uint32_t parts = light_parts(truth.plan.sampling.rays);
+        accuracy.rays = parts * parts;
+    }
+    for (const Knobs& knobs : points) accuracy.points.push_back(point_of(request, knobs, truth.truth, supervision));
+    if (request.averaged > 0) add_averages(request, truth.truth, supervision, accuracy.points);
+    mark_pareto(accuracy.points);
+    return accuracy;
+}
+
+} // namespace reports

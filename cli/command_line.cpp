@@ -178,8 +178,6 @@ void add_accuracy(CLI::App& command, AccuracyCommand& options) {
     command.add_option("--out", options.output.directory, "Folder for accuracy.json, a table and report.html")
         ->type_name("DIR");
     command.add_flag("--json", options.output.json, "Print one JSON document on standard output, and nothing else");
-    command.add_flag("--no-images", options.output.no_images,
-                     "Do not count the pixels that a viewer tells apart (OpenImageIO is not loaded)");
     command.add_flag("--no-cache", options.no_cache,
                      "Neither look for an earlier run's rays in ~/.cache/ropsim nor keep these there");
     command.footer(accuracy_help);

@@ -60,7 +60,7 @@ _ropsim() {
             [[ $word == -* ]] && _ropsim_words "--workload --k --size --camera --set --layers --light --rays --seed --threads --check --out --json --no-images --no-cache --help" ||
                 _ropsim_files glb gltf ;;
         accuracy)
-            [[ $word == -* ]] && _ropsim_words "--design --sweep --rays --averaged --no-cache $frame" || _ropsim_files glb gltf ;;
+            [[ $word == -* ]] && _ropsim_words "--design --sweep --rays --averaged --no-cache ${frame/ --no-images/}" || _ropsim_files glb gltf ;;
         geometry)
             [[ $word == -* ]] && _ropsim_words "--gpu --prepare --submission --reads --fidelity --seed --set --export --out --json --help" ||
                 _ropsim_files glb gltf ;;

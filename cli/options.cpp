@@ -162,7 +162,6 @@ reports::AccuracyRequest request_of(const AccuracyCommand& command) {
     request.sampling.rays = parse_count("--rays", command.rays, most_rays);
     request.sampling.seed = request.comparison.seed;
     if (!command.averaged.empty()) request.averaged = parse_count("--averaged", command.averaged, most_lights);
-    request.perceptual = !command.output.no_images;
     request.use_cache = !command.no_cache;
     return request;
 }

@@ -89,7 +89,7 @@ struct TruthCommand {
 
 struct AccuracyCommand {
     FrameOptions frame;
-    OutputOptions output; ///< no_images: no picture is compared as a viewer would
+    OutputOptions output; ///< directory and json
     std::string design = "multipass";
     std::vector<std::string> sweep; ///< KNOB=VALUE,VALUE
     std::string rays = "1000";

@@ -97,14 +97,4 @@ Measurement read_image(const fs::path& path) {
     return result;
 }
 
-std::uint64_t visibly_different(std::uint32_t width, std::uint32_t height, std::span<const float> a,
-                                std::span<const float> b) {
-    CHECK(a.size() == std::size_t{4} * width * height && b.size() == a.size());
-    std::array<char, error_size> error{};
-    std::uint64_t pixels = 0;
-    if (image_module().visibly_different(width, height, a.data(), b.data(), &pixels, error.data(), error.size()) != 0)
-        throw sim::InputError(fmt::format("pictures cannot be compared: {}", error.data()));
-    return pixels;
-}
-
 } // namespace reports

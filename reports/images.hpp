@@ -6,7 +6,6 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -44,9 +43,5 @@ void write_exr(const std::filesystem::path& path, const Measurement& measurement
 /// The pixels of a file as floats (integers are divided by their maximum); throws sim::InputError. Channel names are
 /// not read.
 Measurement read_image(const std::filesystem::path& path);
-
-/// Pixels of two linear RGBA pictures, four floats a pixel, that a viewer tells apart (Yee's metric).
-std::uint64_t visibly_different(std::uint32_t width, std::uint32_t height, std::span<const float> a,
-                                std::span<const float> b);
 
 } // namespace reports

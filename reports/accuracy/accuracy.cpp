@@ -1,7 +1,6 @@
 #include "reports/accuracy/accuracy.hpp"
 
 #include "reports/accuracy/averaged_shadows.hpp"
-#include "reports/images.hpp"
 #include "sim/check.hpp"
 
 #include <fmt/format.h>
@@ -72,31 +71,9 @@ TruthRun truth_of(const AccuracyRequest& request, const Supervision& supervision
     return run_truth(truth, supervision);
 }
 
-std::vector<float> with_visibility(const Truth& truth) {
-    std::vector<float> picture(truth.visibility.size() * 4, 1.0F);
-    for (std::size_t pixel = 0; pixel < truth.visibility.size(); ++pixel)
-        std::fill_n(&picture[4 * pixel], 4, truth.visibility[pixel]);
-    return picture;
-}
-
-// What a viewer sees of it: the light alone, in grey, or the colours.
-ImageError error_of(const AccuracyRequest& request, const FramePixels& pixels, const pipeline::Frame& frame,
-                    const Truth& truth) {
-    ImageError error;
-    if (frame.light) {
-        const auto mask = inner_pixels(frame.view, pixels.depth);
-        error = shadow_error(pixels.composite, truth.visibility, mask);
-        if (!request.perceptual) return error;
-        std::vector<float> seen(pixels.composite.size()), meant = with_visibility(truth);
-        for (std::size_t pixel = 0; pixel < mask.size(); ++pixel)
-            std::fill_n(&seen[4 * pixel], 4, mask[pixel] != 0 ? pixels.composite[4 * pixel + 3] : meant[4 * pixel]);
-        error.visible = visibly_different(frame.view.width, frame.view.height, seen, meant);
-        return error;
-    }
-    error = picture_error(pixels.composite, truth);
-    if (request.perceptual)
-        error.visible = visibly_different(frame.view.width, frame.view.height, pixels.composite, truth.colours);
-    return error;
+ImageError error_of(const FramePixels& pixels, const pipeline::Frame& frame, const Truth& truth) {
+    return frame.light ? shadow_error(pixels.composite, truth.visibility, kinds_of_pixels(frame.view, pixels.depth))
+                       : picture_error(pixels.composite, truth);
 }
 
 AccuracyPoint point_of(const AccuracyRequest& request, const Knobs& knobs, const Truth& truth,
@@ -110,7 +87,7 @@ AccuracyPoint point_of(const AccuracyRequest& request, const Knobs& knobs, const
     point.sim_ms = static_cast<double>(run.cycles) / (run.core_mhz * 1000.0);
     point.host_s = run.host_seconds + comparison.host.front_end_seconds;
     point.wrong_pixels = run.wrong_pixels;
-    point.error = error_of(request, comparison.pixels.front(), *comparison.frame, truth);
+    point.error = error_of(comparison.pixels.front(), *comparison.frame, truth);
     return point;
 }
 
@@ -121,7 +98,7 @@ void add_averages(const AccuracyRequest& request, const Truth& truth, const Supe
         point.knobs = {fmt::format("averaged={}", averaged.lights)};
         point.sim_ms = averaged.sim_ms;
         point.host_s = averaged.host_s;
-        point.error = error_of(request, averaged.pixels, *averaged.frame, truth);
+        point.error = error_of(averaged.pixels, *averaged.frame, truth);
         points.push_back(std::move(point));
     }
 }
@@ -144,7 +121,6 @@ void mark_pareto(std::vector<AccuracyPoint>& points) {
 
 Accuracy measure_accuracy(const AccuracyRequest& request, const Supervision& supervision) {
     const std::vector<Knobs> points = plan(request);
-    if (request.perceptual) require_images();
     Accuracy accuracy;
     TruthRun truth = truth_of(request, supervision);
     accuracy.workload = request.comparison.workload;

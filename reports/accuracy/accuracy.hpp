@@ -21,7 +21,6 @@ struct AccuracyRequest {
     std::vector<traces::QualityKnob> sweep; ///< every combination; empty: each knob of the workload alone
     LightSampling sampling;                 ///< of the truth, where the workload has a light
     std::uint32_t averaged = 0; ///< largest number of point lights whose hard shadows are averaged; 0: no such points
-    bool perceptual = true;     ///< ImageError::visible, for which OpenImageIO is loaded
     bool use_cache = true;
 };
 

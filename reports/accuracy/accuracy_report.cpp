@@ -34,10 +34,6 @@ std::vector<Column> columns_of(const Accuracy& accuracy) {
         {"RMSE", "", [](const AccuracyPoint& point) { return fmt::format("{:.5f}", point.error.rmse); }},
         {"mean", "", [](const AccuracyPoint& point) { return fmt::format("{:.5f}", point.error.mean); }},
         {"worst", "", [](const AccuracyPoint& point) { return fmt::format("{:.3f}", point.error.worst); }},
-        {"visible", "px",
-         [](const AccuracyPoint& point) {
-             return point.error.visible ? with_commas(*point.error.visible) : std::string("-");
-         }},
         {"wrong", "px", [](const AccuracyPoint& point) { return with_commas(point.wrong_pixels); }}};
     if (!accuracy.points.empty() && accuracy.points.front().error.shadows) {
         columns.push_back({"acne", "%", [](const AccuracyPoint& point) { return share_text(point.error.acne); }});
@@ -103,7 +99,6 @@ nlohmann::ordered_json accuracy_json(const Accuracy& accuracy) {
                                     {"worst", point.error.worst},       {"pareto", point.pareto},
                                     {"pareto_host", point.pareto_host}, {"compared", point.error.compared},
                                     {"excluded", point.error.excluded}, {"wrong_pixels", point.wrong_pixels}};
-        if (point.error.visible) json["visible"] = *point.error.visible;
         if (point.error.shadows) {
             json["acne"] = point.error.acne;
             json["too_dark"] = point.error.too_dark;
@@ -158,8 +153,8 @@ std::string accuracy_page(const Accuracy& accuracy) {
         for (std::size_t i = 0; i < row.size(); ++i) rows.back().push_back({row[i], i == 0 ? "name" : "number"});
     }
     const std::string intro =
-        fmt::format("<p>{}</p>\n<p class=\"note\">ropsim {} ({}). Visible: pixels that a viewer tells apart (Yee's "
-                    "metric). Wrong: pixels that hazards changed; the error excuses none of them.{}</p>\n",
+        fmt::format("<p>{}</p>\n<p class=\"note\">ropsim {} ({}). Wrong: pixels that hazards changed; the error "
+                    "excuses none of them.{}</p>\n",
                     escape_html(how_measured(accuracy)), version_text(), escape_html(build_text()),
                     accuracy.points.front().error.shadows
                         ? " Acne: lit points that lost more than a quarter of the light. Too dark, too bright: further "

@@ -32,44 +32,43 @@ class Sums {
 
 } // namespace
 
-std::vector<std::uint8_t> inner_pixels(const pipeline::View& view, std::span<const float> depth) {
+std::vector<PixelKind> kinds_of_pixels(const pipeline::View& view, std::span<const float> depth) {
     CHECK(depth.size() == view.pixels());
     const pipeline::EyeDepth distance(view.projection);
     const auto width = static_cast<int>(view.width), height = static_cast<int>(view.height);
-    std::vector<double> distances;
-    for (const float window : depth) distances.push_back(window < 1.0F ? distance.distance(window) : INFINITY);
-    std::vector<std::uint8_t> inner(depth.size());
+    std::vector<double> inverse; // of distances: linear along any line of pixels of a plane
+    for (const float window : depth) inverse.push_back(window < 1.0F ? 1.0 / distance.distance(window) : 0.0);
     const auto at = [&](int x, int y) {
         return static_cast<std::size_t>(std::clamp(y, 0, height - 1)) * view.width +
                static_cast<std::size_t>(std::clamp(x, 0, width - 1));
     };
-    constexpr int band = static_cast<int>(silhouette_band);
+    const auto is_inner = [&](int x, int y) {
+        const double here = inverse[at(x, y)];
+        for (const auto& [dx, dy] : {std::pair{1, 0}, {0, 1}, {1, 1}, {1, -1}})
+            for (int step = 1; step <= silhouette_band; ++step) {
+                const double a = inverse[at(x + step * dx, y + step * dy)],
+                             b = inverse[at(x - step * dx, y - step * dy)];
+                if (a == 0.0 || b == 0.0 || std::abs((a + b) / 2.0 - here) > silhouette_jump * here) return false;
+            }
+        return true;
+    };
+    std::vector<PixelKind> kinds(depth.size(), PixelKind::background);
     for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x) {
-            const double here = distances[at(x, y)];
-            bool whole = here < INFINITY;
-            for (int dy = -band; whole && dy <= band; ++dy)
-                for (int dx = -band; whole && dx <= band; ++dx) {
-                    const double there = distances[at(x + dx, y + dy)];
-                    whole = std::abs(there - here) <= silhouette_jump * band * std::min(here, there);
-                }
-            inner[at(x, y)] = whole ? 1 : 0;
-        }
-    return inner;
+        for (int x = 0; x < width; ++x)
+            if (inverse[at(x, y)] != 0.0) kinds[at(x, y)] = is_inner(x, y) ? PixelKind::inner : PixelKind::silhouette;
+    return kinds;
 }
 
 ImageError shadow_error(std::span<const float> picture, std::span<const float> truth,
-                        std::span<const std::uint8_t> mask) {
-    CHECK(picture.size() == 4 * truth.size() && mask.size() == truth.size());
+                        std::span<const PixelKind> kinds) {
+    CHECK(picture.size() == 4 * truth.size() && kinds.size() == truth.size());
     ImageError error;
     error.shadows = true;
     std::uint64_t acne = 0, dark = 0, bright = 0;
     Sums sums;
     for (std::size_t pixel = 0; pixel < truth.size(); ++pixel) {
-        if (mask[pixel] == 0) {
-            ++error.excluded;
-            continue;
-        }
+        if (kinds[pixel] == PixelKind::silhouette) ++error.excluded;
+        if (kinds[pixel] != PixelKind::inner) continue;
         ++error.compared;
         const double excess = static_cast<double>(picture[4 * pixel + 3]) - static_cast<double>(truth[pixel]);
         sums.add(excess);

@@ -1,8 +1,6 @@
 #include "reports/image_module/image_module.h"
 
 #include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imagebuf.h>
-#include <OpenImageIO/imagebufalgo.h>
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
@@ -10,7 +8,6 @@
 #include <exception>
 #include <memory>
 #include <string>
-#include <vector>
 
 namespace {
 
@@ -89,29 +86,7 @@ int read(const char* path, std::uint32_t* width, std::uint32_t* height, std::uin
     }
 }
 
-int visibly_different(std::uint32_t width, std::uint32_t height, const float* a, const float* b, std::uint64_t* pixels,
-                      char* error, std::size_t size) {
-    try {
-        const auto picture = [&](const float* rgba) {
-            std::vector<float> rgb;
-            for (std::size_t i = 0; i < std::size_t{4} * width * height; ++i)
-                if (i % 4 != 3) rgb.push_back(rgba[i]);
-            OIIO::ImageBuf buffer(
-                OIIO::ImageSpec(static_cast<int>(width), static_cast<int>(height), 3, OIIO::TypeDesc::FLOAT));
-            buffer.set_pixels(buffer.roi(), OIIO::TypeDesc::FLOAT, rgb.data());
-            return buffer;
-        };
-        OIIO::ImageBufAlgo::CompareResults result{};
-        const int failed = OIIO::ImageBufAlgo::compare_Yee(picture(a), picture(b), result, 100, 45, {}, 1);
-        if (failed < 0) return fail("compare_Yee: " + OIIO::geterror(), error, size);
-        *pixels = static_cast<std::uint64_t>(failed);
-        return 0;
-    } catch (const std::exception& exception) {
-        return fail(exception.what(), error, size);
-    }
-}
-
-constexpr RopsimImageModule image_module{ROPSIM_IMAGE_MODULE_VERSION, encode_png, encode_exr, visibly_different, read};
+constexpr RopsimImageModule image_module{ROPSIM_IMAGE_MODULE_VERSION, encode_png, encode_exr, read};
 
 } // namespace
 

@@ -6,7 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define ROPSIM_IMAGE_MODULE_VERSION 2U
+#define ROPSIM_IMAGE_MODULE_VERSION 1U
 
 #ifdef __cplusplus
 extern "C" {
@@ -31,11 +31,6 @@ typedef struct {
     /* 32-bit floats, scene-linear, ZIP-compressed, without the time of writing: equal pixels give equal files. */
     int (*encode_exr)(const RopsimImageShape* shape, const float* pixels, RopsimImageSink sink, void* sink_data,
                       char* error, size_t size);
-
-    /* Pixels of two linear RGBA pictures, 4 floats each, that a viewer tells apart: Yee's metric at 100 cd/m2 and a
-     * field of view of 45 degrees. Alpha does not count. */
-    int (*visibly_different)(uint32_t width, uint32_t height, const float* a, const float* b, uint64_t* pixels,
-                             char* error, size_t size);
 
     /* Any format OpenImageIO knows, converted to float. `pixels` may be null: then only the size is asked for;
      * otherwise it has room for width * height * channels values. */

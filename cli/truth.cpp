@@ -3,6 +3,7 @@
 #include "cli/console.hpp"
 #include "cli/interruption.hpp"
 #include "cli/progress_line.hpp"
+#include "reports/atomic_file.hpp"
 #include "reports/images.hpp"
 #include "reports/result.hpp"
 
@@ -19,6 +20,7 @@ reports::TruthRun compute(const reports::TruthRequest& request) {
 
 void truth(const TruthCommand& command) {
     const reports::TruthRequest request = request_of(command);
+    if (!command.directory.empty()) reports::make_directory(command.directory);
     if (!command.directory.empty() && !command.no_images) reports::require_images();
     const reports::TruthRun run = compute(request);
     for (const std::string& note : run.notes) complain(note);

@@ -16,9 +16,9 @@ namespace reports {
 
 /// How to do work on many pixels or points. The result does not depend on it.
 struct TracingOptions {
-    unsigned threads = 0;                    ///< 0 = all cores
-    const std::atomic<bool>* stop = nullptr; ///< becomes true: sim::Interrupted is thrown soon
-    std::function<void(double)> progress;    ///< called with the share done, 0 to 1, never by two threads at once
+    unsigned threads = 0;                      ///< 0 = all cores
+    const std::atomic<bool>* stop = nullptr;   ///< becomes true: sim::Interrupted is thrown soon
+    std::function<void(double)> progress = {}; ///< called with the share done, 0 to 1, never by two threads at once
 };
 
 /// Calls piece(i) for every i below `count`, in no order; throws what a piece throws.

@@ -36,7 +36,7 @@ TEST_P(CliBadInput, IsOneLineAndTheRightStatus) { expect_one_line(run_program(Ge
 INSTANTIATE_TEST_SUITE_P(
     Arguments, CliBadInput,
     ::testing::Values(
-        Mistake{{}, 2, "expected a subcommand: compare, run, geometry, validate, calibrate, study, describe"},
+        Mistake{{}, 2, "expected a subcommand: compare, run, truth, geometry, validate, calibrate, study, describe"},
         Mistake{{"compar"}, 2, "did you mean 'compare'?"}, Mistake{{"compare"}, 2, "scene is required"},
         Mistake{{"compare", "gen:stack", "--desings", "x"}, 2, "did you mean '--designs'?"},
         Mistake{{"compare", "gen:stack", "more"}, 2, "unexpected argument 'more'"},

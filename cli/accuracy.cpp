@@ -5,6 +5,8 @@
 #include "cli/interruption.hpp"
 #include "cli/measuring.hpp"
 #include "cli/progress_line.hpp"
+#include "reports/atomic_file.hpp"
+#include "reports/images.hpp"
 #include "reports/result.hpp"
 
 namespace cli {
@@ -19,13 +21,19 @@ reports::Accuracy measure(const reports::AccuracyRequest& request) {
 } // namespace
 
 void accuracy(const AccuracyCommand& command) {
-    const reports::Accuracy result = measure(request_of(command));
+    const reports::AccuracyRequest request = request_of(command);
+    if (request.pictures) reports::require_images();
+    const reports::Accuracy result = measure(request);
     for (const std::string& note : result.notes) complain(note);
     const auto document = reports::accuracy_json(result);
     std::string written;
-    if (!command.output.directory.empty())
+    if (!command.output.directory.empty()) {
+        const FilesInProgress keep_alive;
+        reports::make_directory(command.output.directory);
+        reports::write_accuracy_pictures(result, command.output.directory);
         written = "\n" + write_tables(command.output.directory, "accuracy.json", document,
                                       {reports::accuracy_table(result)}, reports::accuracy_page(result));
+    }
     print(command.output.json ? reports::result_text(document)
                               : reports::accuracy_text(result, terminal_style()) + written);
 }

@@ -77,7 +77,7 @@ void add_frame_options(CLI::App& command, FrameOptions& options) {
     command
         .add_option("scene", options.scene,
                     "glTF file (.glb, .gltf), FILE#N for its scene number N, tetrahedra (.vtk, .tetm), or "
-                    "gen:NAME?key=value&key=value")
+                    "gen:NAME?key=value&key=value; +ground behind it lays a floor below the scene")
         ->required()
         ->type_name("SCENE");
     command.add_option("--gpu", options.gpu, "Name of a GPU or a .toml file (default neutral)")->type_name("GPU");
@@ -96,6 +96,11 @@ void add_frame_options(CLI::App& command, FrameOptions& options) {
             "--camera", options.camera,
             "auto, the number of a camera of the scene, or ex,ey,ez,tx,ty,tz,fovy (eye, target, vertical degrees)")
         ->type_name("CAMERA");
+    command
+        .add_option("--light", options.light,
+                    "Square light of soft-shadows: auto, the number of a spot light of the scene, or px,py,pz,tx,ty,tz "
+                    "(place and target)")
+        ->type_name("LIGHT");
     command.add_option("--seed", options.seed, "Seed of everything random in the hardware (default 1)")->type_name("N");
     command.add_option("--threads", options.threads, "Threads (default: all cores); results do not depend on it")
         ->type_name("N");
@@ -118,7 +123,7 @@ void add_truth(CLI::App& command, TruthCommand& options) {
     command
         .add_option("scene", options.scene,
                     "glTF file (.glb, .gltf), FILE#N for its scene number N, tetrahedra (.vtk, .tetm), or "
-                    "gen:NAME?key=value&key=value")
+                    "gen:NAME?key=value&key=value; +ground behind it lays a floor below the scene")
         ->required()
         ->type_name("SCENE");
     command
@@ -175,9 +180,11 @@ void add_accuracy(CLI::App& command, AccuracyCommand& options) {
         .add_option("--averaged", options.averaged,
                     "Also the mean of 4, 16, 64 ... hard shadows, up to N (soft-shadows)")
         ->type_name("N");
-    command.add_option("--out", options.output.directory, "Folder for accuracy.json, a table and report.html")
+    command
+        .add_option("--out", options.output.directory, "Folder for accuracy.json, a table, report.html and pictures")
         ->type_name("DIR");
     command.add_flag("--json", options.output.json, "Print one JSON document on standard output, and nothing else");
+    command.add_flag("--no-images", options.output.no_images, "Write no pictures (OpenImageIO is not loaded)");
     command.add_flag("--no-cache", options.no_cache,
                      "Neither look for an earlier run's rays in ~/.cache/ropsim nor keep these there");
     command.footer(accuracy_help);
@@ -187,7 +194,7 @@ void add_geometry(CLI::App& command, GeometryCommand& options) {
     command
         .add_option("scene", options.scene,
                     "glTF file (.glb, .gltf), FILE#N for its scene number N, tetrahedra (.vtk, .tetm), or "
-                    "gen:NAME?key=value&key=value")
+                    "gen:NAME?key=value&key=value; +ground behind it lays a floor below the scene")
         ->required()
         ->type_name("SCENE");
     command.add_option("--gpu", options.gpu, "Name of a GPU or a .toml file (default neutral)")->type_name("GPU");

@@ -27,7 +27,7 @@ _ropsim_files() {
 
 _ropsim() {
     local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD - 1]} command=${COMP_WORDS[1]}
-    local frame="--gpu --workload --k --entry --program --size --camera --seed --threads --set --out --json --no-images --help"
+    local frame="--gpu --workload --k --entry --program --size --camera --light --seed --threads --set --out --json --no-images --help"
     COMPREPLY=()
     if ((COMP_CWORD == 1)); then
         _ropsim_words "compare run truth accuracy geometry validate calibrate study describe --help --version"
@@ -60,7 +60,7 @@ _ropsim() {
             [[ $word == -* ]] && _ropsim_words "--workload --k --size --camera --set --layers --light --rays --seed --threads --check --out --json --no-images --no-cache --help" ||
                 _ropsim_files glb gltf ;;
         accuracy)
-            [[ $word == -* ]] && _ropsim_words "--design --sweep --rays --averaged --no-cache ${frame/ --no-images/}" || _ropsim_files glb gltf ;;
+            [[ $word == -* ]] && _ropsim_words "--design --sweep --rays --averaged --no-cache $frame" || _ropsim_files glb gltf ;;
         geometry)
             [[ $word == -* ]] && _ropsim_words "--gpu --prepare --submission --reads --fidelity --seed --set --export --out --json --help" ||
                 _ropsim_files glb gltf ;;

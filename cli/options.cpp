@@ -112,6 +112,7 @@ reports::ComparisonRequest request_of(const FrameOptions& options, const std::st
     if (!options.k.empty()) request.workload_settings.push_back("k=" + options.k);
     if (!options.entry.empty()) request.workload_settings.push_back("entry=" + options.entry);
     if (!options.program.empty()) request.workload_settings.push_back("program=" + options.program);
+    if (!options.light.empty()) request.workload_settings.push_back("light=" + options.light);
     constexpr std::string_view workload = "workload.";
     for (const std::string& setting : options.settings)
         if (setting.starts_with(workload))
@@ -162,6 +163,7 @@ reports::AccuracyRequest request_of(const AccuracyCommand& command) {
     request.sampling.rays = parse_count("--rays", command.rays, most_rays);
     request.sampling.seed = request.comparison.seed;
     if (!command.averaged.empty()) request.averaged = parse_count("--averaged", command.averaged, most_lights);
+    request.pictures = !command.output.directory.empty() && !command.output.no_images;
     request.use_cache = !command.no_cache;
     return request;
 }

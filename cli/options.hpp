@@ -22,6 +22,7 @@ struct FrameOptions {
     std::string k;
     std::string entry;
     std::string program;
+    std::string light;
     std::string size = "512x512";
     std::string camera = "auto";
     std::string seed = "1";
@@ -89,7 +90,7 @@ struct TruthCommand {
 
 struct AccuracyCommand {
     FrameOptions frame;
-    OutputOptions output; ///< directory and json
+    OutputOptions output;
     std::string design = "multipass";
     std::vector<std::string> sweep; ///< KNOB=VALUE,VALUE
     std::string rays = "1000";

@@ -1,6 +1,7 @@
 #include "reports/accuracy/accuracy.hpp"
 
 #include "reports/accuracy/averaged_shadows.hpp"
+#include "reports/accuracy/error_picture.hpp"
 #include "sim/check.hpp"
 
 #include <fmt/format.h>
@@ -71,9 +72,18 @@ TruthRun truth_of(const AccuracyRequest& request, const Supervision& supervision
     return run_truth(truth, supervision);
 }
 
-ImageError error_of(const FramePixels& pixels, const pipeline::Frame& frame, const Truth& truth) {
-    return frame.light ? shadow_error(pixels.composite, truth.visibility, kinds_of_pixels(frame.view, pixels.depth))
-                       : picture_error(pixels.composite, truth);
+// Measures the picture, and shows it where that is wanted.
+void judge(const AccuracyRequest& request, const FramePixels& pixels, const pipeline::Frame& frame, const Truth& truth,
+           AccuracyPoint& point) {
+    if (frame.light) {
+        const auto kinds = kinds_of_pixels(frame.view, pixels.depth);
+        point.error = shadow_error(pixels.composite, truth.visibility, kinds);
+        if (request.pictures)
+            point.picture = shadow_error_picture(frame.view, pixels.composite, truth.visibility, kinds, point.name());
+        return;
+    }
+    point.error = picture_error(pixels.composite, truth);
+    if (request.pictures) point.picture = picture_error_picture(pixels.composite, truth, point.name());
 }
 
 AccuracyPoint point_of(const AccuracyRequest& request, const Knobs& knobs, const Truth& truth,
@@ -87,7 +97,7 @@ AccuracyPoint point_of(const AccuracyRequest& request, const Knobs& knobs, const
     point.sim_ms = static_cast<double>(run.cycles) / (run.core_mhz * 1000.0);
     point.host_s = run.host_seconds + comparison.host.front_end_seconds;
     point.wrong_pixels = run.wrong_pixels;
-    point.error = error_of(comparison.pixels.front(), *comparison.frame, truth);
+    judge(request, comparison.pixels.front(), *comparison.frame, truth, point);
     return point;
 }
 
@@ -98,7 +108,7 @@ void add_averages(const AccuracyRequest& request, const Truth& truth, const Supe
         point.knobs = {fmt::format("averaged={}", averaged.lights)};
         point.sim_ms = averaged.sim_ms;
         point.host_s = averaged.host_s;
-        point.error = error_of(averaged.pixels, *averaged.frame, truth);
+        judge(request, averaged.pixels, *averaged.frame, truth, point);
         points.push_back(std::move(point));
     }
 }
@@ -108,6 +118,8 @@ bool beats(double time, double error, double other_time, double other_error) {
 }
 
 } // namespace
+
+std::string AccuracyPoint::name() const { return knobs.empty() ? "as set" : fmt::format("{}", fmt::join(knobs, " ")); }
 
 void mark_pareto(std::vector<AccuracyPoint>& points) {
     for (AccuracyPoint& point : points) {

@@ -6,10 +6,12 @@
 
 #include "reports/accuracy/image_error.hpp"
 #include "reports/csv.hpp"
+#include "reports/images.hpp"
 #include "reports/terminal_table.hpp"
 #include "reports/truth/truth_run.hpp"
 #include "traces/workloads.hpp"
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -21,6 +23,7 @@ struct AccuracyRequest {
     std::vector<traces::QualityKnob> sweep; ///< every combination; empty: each knob of the workload alone
     LightSampling sampling;                 ///< of the truth, where the workload has a light
     std::uint32_t averaged = 0; ///< largest number of point lights whose hard shadows are averaged; 0: no such points
+    bool pictures = false;
     bool use_cache = true;
 };
 
@@ -32,6 +35,9 @@ struct AccuracyPoint {
     ImageError error;
     bool pareto = false;      ///< no other point is at once faster on the GPU and nearer to the truth
     bool pareto_host = false; ///< the same on this machine
+    Picture picture;          ///< beside the truth; of no size unless asked for
+
+    std::string name() const; ///< its knobs
 };
 
 struct Accuracy {
@@ -57,5 +63,7 @@ nlohmann::ordered_json accuracy_json(const Accuracy& accuracy);
 std::string accuracy_text(const Accuracy& accuracy, TerminalStyle style);
 Table accuracy_table(const Accuracy& accuracy);
 std::string accuracy_page(const Accuracy& accuracy);
+/// Writes the points' pictures, "knob=value.png", and returns their names in the order of the points.
+std::vector<std::string> write_accuracy_pictures(const Accuracy& accuracy, const std::filesystem::path& directory);
 
 } // namespace reports

@@ -7,6 +7,7 @@
 #include "reports/text_table.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -14,8 +15,24 @@ namespace reports {
 
 namespace {
 
-std::string name_of(const AccuracyPoint& point) {
-    return point.knobs.empty() ? "as set" : fmt::format("{}", fmt::join(point.knobs, " "));
+// Letters that every file system takes.
+std::string picture_name(const AccuracyPoint& point) {
+    std::string name = point.name();
+    for (char& letter : name)
+        if (std::isalnum(static_cast<unsigned char>(letter)) == 0 &&
+            std::string_view("=._-").find(letter) == std::string_view::npos)
+            letter = '_';
+    return name + ".png";
+}
+
+std::string figures_of(const Accuracy& accuracy) {
+    std::string html;
+    for (const AccuracyPoint& point : accuracy.points)
+        if (!point.picture.pixels.empty())
+            html += fmt::format("<figure><a href=\"{0}\"><img src=\"{0}\" alt=\"{1}\" loading=\"lazy\"></a>"
+                                "<figcaption>{1}</figcaption></figure>\n",
+                                escape_html(picture_name(point)), escape_html(point.name()));
+    return html.empty() ? html : "<div class=\"pictures\">\n" + html + "</div>\n";
 }
 
 struct Column {
@@ -127,7 +144,7 @@ std::string accuracy_text(const Accuracy& accuracy, TerminalStyle style) {
     for (const Column& column : shown) columns.push_back({column.title, column.unit, false});
     std::vector<std::vector<std::string>> rows;
     for (const AccuracyPoint& point : accuracy.points) {
-        rows.push_back({name_of(point)});
+        rows.push_back({point.name()});
         for (const Column& column : shown) rows.back().push_back(column.cell(point));
     }
     return wrap(how_measured(accuracy), style.columns, 2) + "\n" + text_table(columns, rows, style.colour);
@@ -139,7 +156,7 @@ Table accuracy_table(const Accuracy& accuracy) {
     for (const Column& column : shown)
         table.header.push_back(*column.unit == '\0' ? column.title : fmt::format("{} [{}]", column.title, column.unit));
     for (const AccuracyPoint& point : accuracy.points) {
-        table.rows.push_back({name_of(point)});
+        table.rows.push_back({point.name()});
         for (const Column& column : shown) table.rows.back().push_back(column.cell(point));
     }
     return table;
@@ -160,8 +177,21 @@ std::string accuracy_page(const Accuracy& accuracy) {
                         ? " Acne: lit points that lost more than a quarter of the light. Too dark, too bright: further "
                           "points off by more than a tenth."
                         : "");
+    std::vector<PageSection> sections{{"Points", html_table(table.header, rows)}};
+    if (const std::string figures = figures_of(accuracy); !figures.empty())
+        sections.push_back({"Beside the truth", figures});
     return plot_page("Error against run time", intro, {front_plot(accuracy, false), front_plot(accuracy, true)},
-                     {{"Points", html_table(table.header, rows)}});
+                     sections);
+}
+
+std::vector<std::string> write_accuracy_pictures(const Accuracy& accuracy, const std::filesystem::path& directory) {
+    std::vector<std::string> names;
+    for (const AccuracyPoint& point : accuracy.points) {
+        if (point.picture.pixels.empty()) continue;
+        names.push_back(picture_name(point));
+        write_png(directory / names.back(), point.picture);
+    }
+    return names;
 }
 
 } // namespace reports

@@ -4,6 +4,7 @@
 #include "sim/check.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace reports {
@@ -59,31 +60,36 @@ std::vector<PixelKind> kinds_of_pixels(const pipeline::View& view, std::span<con
     return kinds;
 }
 
+ShadowErrorKind shadow_error_kind(float seen, float truth) {
+    const float excess = seen - truth;
+    if (truth >= 0.95F && excess < -0.25F) return ShadowErrorKind::acne;
+    if (excess < -0.1F) return ShadowErrorKind::too_dark;
+    return excess > 0.1F ? ShadowErrorKind::too_bright : ShadowErrorKind::small;
+}
+
 ImageError shadow_error(std::span<const float> picture, std::span<const float> truth,
                         std::span<const PixelKind> kinds) {
     CHECK(picture.size() == 4 * truth.size() && kinds.size() == truth.size());
     ImageError error;
     error.shadows = true;
-    std::uint64_t acne = 0, dark = 0, bright = 0;
+    std::array<std::uint64_t, 4> kind{};
     Sums sums;
     for (std::size_t pixel = 0; pixel < truth.size(); ++pixel) {
         if (kinds[pixel] == PixelKind::silhouette) ++error.excluded;
         if (kinds[pixel] != PixelKind::inner) continue;
         ++error.compared;
-        const double excess = static_cast<double>(picture[4 * pixel + 3]) - static_cast<double>(truth[pixel]);
-        sums.add(excess);
-        if (truth[pixel] >= 0.95F && excess < -0.25)
-            ++acne;
-        else if (excess < -0.1)
-            ++dark;
-        else if (excess > 0.1)
-            ++bright;
+        const float seen = picture[4 * pixel + 3];
+        sums.add(static_cast<double>(seen) - static_cast<double>(truth[pixel]));
+        ++kind[static_cast<std::size_t>(shadow_error_kind(seen, truth[pixel]))];
     }
     sums.write(error);
-    const double pixels = std::max(1.0, static_cast<double>(error.compared));
-    error.acne = static_cast<double>(acne) / pixels;
-    error.too_dark = static_cast<double>(dark) / pixels;
-    error.too_bright = static_cast<double>(bright) / pixels;
+    const auto share = [&](ShadowErrorKind one) {
+        return static_cast<double>(kind[static_cast<std::size_t>(one)]) /
+               std::max(1.0, static_cast<double>(error.compared));
+    };
+    error.acne = share(ShadowErrorKind::acne);
+    error.too_dark = share(ShadowErrorKind::too_dark);
+    error.too_bright = share(ShadowErrorKind::too_bright);
     return error;
 }
 

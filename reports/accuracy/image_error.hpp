@@ -36,6 +36,10 @@ enum class PixelKind : std::uint8_t { background, silhouette, inner };
 /// What each pixel shows. `depth`: window depths of the frame's view.
 std::vector<PixelKind> kinds_of_pixels(const pipeline::View& view, std::span<const float> depth);
 
+enum class ShadowErrorKind : std::uint8_t { small, acne, too_dark, too_bright };
+/// As the shares of ImageError count them.
+ShadowErrorKind shadow_error_kind(float seen, float truth);
+
 /// The light that each inner pixel's point sees: `picture` in its alpha, one float per pixel in `truth`.
 ImageError shadow_error(std::span<const float> picture, std::span<const float> truth, std::span<const PixelKind> kinds);
 

@@ -61,7 +61,7 @@ class Machine {
     void keep_entry(std::size_t pixel, std::uint32_t entry, QuadId id, const FragmentStream& stream);
     void draw_lists(const Pass& pass, const FragmentStream& stream);
     std::uint64_t run_lists(const FragmentStream& stream);
-    bool overflowed(std::size_t pixel, std::uint32_t fragments) const;
+    bool overflowed(std::size_t place, std::uint32_t fragments) const;
     static std::uint32_t geometry_passes(const KBufferPlan& plan, const ModifyProgram& program);
     bool pass_reads_textures() const;
     bool peels() const; ///< the k-buffer pass becomes one pass per layer
@@ -74,7 +74,9 @@ class Machine {
     void set_costs();
     void list_units(RunResult& result) const;
     void collect_pixels(RunResult& result, const ReferenceImage& reference) const;
-    bool explained(std::size_t pixel) const; ///< a hazard happened here
+    void judge_pixels(RunResult& result, const ReferenceImage& reference, std::vector<std::uint8_t> wrong,
+                      const std::vector<std::uint8_t>& tied) const;
+    bool explained(std::size_t place) const; ///< a hazard happened here
     void collect_hazards(RunResult& result) const;
     void collect_counters(RunResult& result) const;
     void collect_vertex_caches(RunResult& result) const;

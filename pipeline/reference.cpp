@@ -152,11 +152,7 @@ class PassRunner {
 class Reference {
   public:
     Reference(const Frame& frame, std::span<const FragmentStream> streams, QuadId delay, unsigned threads)
-        : frame_(frame),
-          streams_(streams),
-          delay_(delay),
-          threads_(threads),
-          pixels_(std::size_t{frame.view.width} * frame.view.height) {
+        : frame_(frame), streams_(streams), delay_(delay), threads_(threads), pixels_(frame.view.places()) {
         allocate();
         for (const Pass& pass : frame.passes) run(pass);
         finish();
@@ -208,6 +204,7 @@ class Reference {
         CHECK(next_stream_ < streams_.size());
         const FragmentStream& stream = streams_[next_stream_++];
         CHECK(stream.width == frame_.view.width && stream.height == frame_.view.height);
+        CHECK(stream.samples == frame_.view.samples);
         CHECK(!pass.colour || stream.colours.size() == stream.quads.size());
         const TileLists tiles(stream);
         parallel_for(threads_, tiles.count(), [&](std::size_t tile) {

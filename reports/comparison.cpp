@@ -5,6 +5,7 @@
 #include "pipeline/functional/composite.hpp"
 #include "pipeline/functional/frame_streams.hpp"
 #include "pipeline/functional/parallel.hpp"
+#include "pipeline/functional/sample_pattern.hpp"
 #include "pipeline/machine.hpp"
 #include "reports/numbers.hpp"
 #include "traces/camera.hpp"
@@ -69,7 +70,8 @@ void read_scene(const ComparisonRequest& request, ComparisonInput& input) {
     traces::WorkloadOptions options;
     for (const std::string& setting : request.workload_settings) options.set(setting);
     const traces::Scene scene = traces::load_scene(request.scene);
-    const pipeline::View view = traces::make_view(scene, request.camera, request.width, request.height);
+    pipeline::View view = traces::make_view(scene, request.camera, request.width, request.height);
+    view.samples = request.samples;
     input.frame = std::make_shared<const pipeline::Frame>(traces::build_frame(scene, view, request.workload, options));
     input.scene = facts_of(scene, request.camera);
 }
@@ -97,7 +99,7 @@ void check_designs(ComparisonInput& input, bool only_able) {
 // A frame that cannot fit would be ended by the system without a word.
 void check_memory(const ComparisonInput& input, const ComparisonRequest& request) {
     const pipeline::Frame& frame = *input.frame;
-    const double pixels = static_cast<double>(frame.view.width) * frame.view.height;
+    const auto pixels = static_cast<double>(frame.view.places());
     const double kbuffer = frame.program ? frame.program->bytes_per_pixel() : 0;
     constexpr double colour = 16, depth = 12;
     // One k-buffer, colour and depth surface for the reference and each design; those that run also hold older
@@ -107,8 +109,10 @@ void check_memory(const ComparisonInput& input, const ComparisonRequest& request
         pixels * ((kbuffer + colour + depth) * (1 + static_cast<double>(input.designs.size())) + running * kbuffer);
     const double here = static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
     if (needed > here)
-        throw sim::InputError(fmt::format("--size {}x{}: these designs need at least {} of memory, this machine has {}",
-                                          request.width, request.height, bytes_text(needed), bytes_text(here)));
+        throw sim::InputError(
+            fmt::format("--size {}x{}{}: these designs need at least {} of memory, this machine has {}", request.width,
+                        request.height, request.samples == 1 ? "" : fmt::format(" --samples {}", request.samples),
+                        bytes_text(needed), bytes_text(here)));
 }
 
 std::vector<pipeline::FragmentStream> shade(const pipeline::Frame& frame, unsigned threads,
@@ -138,9 +142,23 @@ std::shared_ptr<const SubmittedFrame> submit(const ComparisonInput& input, const
 
 FramePixels pixels_of(const pipeline::Frame& frame, std::vector<float> kbuffer, const std::vector<float>& colour) {
     FramePixels pixels;
-    pixels.composite = kbuffer.empty() ? colour : pipeline::composite(frame, kbuffer, colour);
+    if (!kbuffer.empty())
+        pixels.composite = pipeline::composite(frame, kbuffer, colour);
+    else if (!colour.empty())
+        pixels.composite = pipeline::mean_of_samples(frame.view, colour, 4);
     pixels.kbuffer = std::move(kbuffer);
+    pixels.kbuffer.resize(pixels.kbuffer.size() / frame.view.places() * frame.view.width * frame.view.height);
+    pixels.kbuffer.shrink_to_fit();
     return pixels;
+}
+
+std::vector<std::uint32_t> most_of_samples(const pipeline::View& view, const std::vector<std::uint32_t>& places) {
+    std::vector<std::uint32_t> most(std::size_t{view.width} * view.height);
+    for (std::uint32_t sample = 0; sample < view.samples; ++sample) {
+        const auto plane = pipeline::plane_of_sample(view, sample, std::span(places), 1);
+        for (std::size_t pixel = 0; pixel < most.size(); ++pixel) most[pixel] = std::max(most[pixel], plane[pixel]);
+    }
+    return most;
 }
 
 pipeline::RunResult run_design(const ComparisonInput& input, std::size_t number, const Supervision& supervision) {
@@ -218,7 +236,7 @@ Comparison compare(ComparisonInput input, const Supervision& supervision) {
             pixels_of(*input.frame, std::move(comparison.runs[i].kbuffer), comparison.runs[i].colour);
     });
     comparison.reference = pixels_of(*input.frame, std::move(input.reference.kbuffer), input.reference.colour);
-    comparison.depth_complexity = std::move(input.reference.depth_complexity);
+    comparison.depth_complexity = most_of_samples(input.frame->view, input.reference.depth_complexity);
     comparison.scene = std::move(input.scene);
     comparison.gpu = std::move(input.gpu);
     comparison.frame = std::move(input.frame);

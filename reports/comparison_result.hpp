@@ -26,7 +26,8 @@ struct SceneFacts {
     std::vector<std::string> notes; ///< what of the input is not drawn
 };
 
-/// The frame after the last pass, row 0 first.
+/// The frame after the last pass, row 0 first. With several samples to a pixel, `composite` is their mean, and
+/// `kbuffer` that of the first.
 struct FramePixels {
     std::vector<float> kbuffer;   ///< floats_per_pixel of the program for each pixel; empty without a k-buffer
     std::vector<float> composite; ///< linear RGBA of the finished picture for each pixel; empty when no pass makes one
@@ -53,7 +54,8 @@ struct Comparison {
     std::shared_ptr<const pipeline::Frame> frame;
     std::uint64_t seed = 1;
     FramePixels reference;                                 ///< in submission order, without time
-    std::vector<std::uint32_t> depth_complexity;           ///< fragments drawn onto each pixel in one geometry pass
+    std::vector<std::uint32_t> depth_complexity;           ///< fragments drawn onto each pixel in one geometry pass; of
+                                                           ///< several samples the most
     std::vector<pipeline::RunResult> runs;                 ///< in the order in which the designs were asked for
     std::vector<nlohmann::ordered_json> design_parameters; ///< of each run
     std::vector<nlohmann::ordered_json> design_support;    ///< what it can be used for, of each run
@@ -62,6 +64,7 @@ struct Comparison {
 
     std::uint32_t width() const { return frame->view.width; }
     std::uint32_t height() const { return frame->view.height; }
+    std::uint32_t samples() const { return frame->view.samples; }
 };
 
 } // namespace reports

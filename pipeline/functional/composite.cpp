@@ -1,6 +1,7 @@
 #include "pipeline/functional/composite.hpp"
 
 #include "pipeline/functional/eye_depth.hpp"
+#include "pipeline/functional/sample_pattern.hpp"
 #include "sim/check.hpp"
 
 #include <algorithm>
@@ -96,21 +97,43 @@ std::vector<float> composite_layers(const Frame& frame, std::span<const float> k
     return picture;
 }
 
+std::vector<float> picture_of(const Frame& frame, std::span<const float> kbuffer,
+                              std::span<const float> opaque_colour) {
+    return frame.resolve ? frame.resolve->picture(frame, kbuffer, opaque_colour)
+                         : composite_layers(frame, kbuffer, opaque_colour);
+}
+
+std::vector<float> picture_of_samples(const Frame& frame, std::span<const float> kbuffer,
+                                      std::span<const float> opaque_colour) {
+    const std::size_t floats = frame.program->floats_per_pixel();
+    View planes = frame.view;
+    std::vector<float> pictures(planes.places() * 4);
+    Frame seen = frame;
+    for (std::uint32_t sample = 0; sample < planes.samples; ++sample) {
+        seen.view = view_of_sample(planes, sample);
+        const auto background =
+            opaque_colour.empty() ? opaque_colour : plane_of_sample(planes, sample, opaque_colour, 4);
+        const auto picture = picture_of(seen, plane_of_sample(planes, sample, kbuffer, floats), background);
+        std::copy(picture.begin(), picture.end(), plane_of_sample(planes, sample, std::span(pictures), 4).begin());
+    }
+    return mean_of_samples(planes, pictures, 4);
+}
+
 } // namespace
 
 std::vector<float> composite(const Frame& frame, std::span<const float> kbuffer, std::span<const float> opaque_colour) {
     CHECK(frame.program != nullptr);
-    const std::size_t pixels = std::size_t{frame.view.width} * frame.view.height;
-    CHECK(kbuffer.size() == pixels * frame.program->floats_per_pixel());
-    CHECK(opaque_colour.empty() || opaque_colour.size() == pixels * 4);
+    const std::size_t places = frame.view.places();
+    CHECK(kbuffer.size() == places * frame.program->floats_per_pixel());
+    CHECK(opaque_colour.empty() || opaque_colour.size() == places * 4);
 
     std::vector<float> finished;
     if (frame.program->drains()) {
         finished = drained(*frame.program, kbuffer);
         kbuffer = finished;
     }
-    return frame.resolve ? frame.resolve->picture(frame, kbuffer, opaque_colour)
-                         : composite_layers(frame, kbuffer, opaque_colour);
+    return frame.view.samples == 1 ? picture_of(frame, kbuffer, opaque_colour)
+                                   : picture_of_samples(frame, kbuffer, opaque_colour);
 }
 
 } // namespace pipeline

@@ -11,9 +11,12 @@ namespace pipeline {
 /// The picture of a frame: drains the pixels of `kbuffer` if the program asks for it, and hands them to frame.resolve;
 /// without one, composites the layers.
 ///
-/// Compositing: RGBA floats per pixel (alpha 1) of `kbuffer`, which holds program->floats_per_pixel() floats per pixel,
+/// Compositing: RGBA floats per pixel (alpha 1) of `kbuffer`, which holds program->floats_per_pixel() floats per place,
 /// row 0 first: C += T * a * c_i and T *= 1 - a over the entries in stored order with a = frame.opacity, then C += T *
 /// background.
+///
+/// With several samples to a pixel, each sample's plane becomes a picture of its own, seen through the pixels' samples
+/// instead of their centres; the result is their mean.
 ///
 /// The background is `opaque_colour` (RGBA floats per pixel) or, where that is empty, frame.background. Entries that
 /// still have the depth they were cleared to are empty. Programs with four floats per entry give the layers' colours;

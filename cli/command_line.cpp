@@ -91,6 +91,8 @@ void add_frame_options(CLI::App& command, FrameOptions& options) {
                     "nearest-k)")
         ->type_name("NAME");
     command.add_option("--size", options.size, "Pixels of the frame (default 512x512)")->type_name("WxH");
+    command.add_option("--samples", options.samples, "Samples of a pixel, against jagged edges: 1, 4 or 8 (default 1)")
+        ->type_name("N");
     command
         .add_option(
             "--camera", options.camera,

@@ -27,7 +27,7 @@ _ropsim_files() {
 
 _ropsim() {
     local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD - 1]} command=${COMP_WORDS[1]}
-    local frame="--gpu --workload --k --entry --program --size --camera --light --seed --threads --set --out --json --no-images --help"
+    local frame="--gpu --workload --k --entry --program --size --samples --camera --light --seed --threads --set --out --json --no-images --help"
     COMPREPLY=()
     if ((COMP_CWORD == 1)); then
         _ropsim_words "compare run truth accuracy geometry validate calibrate study describe --help --version"
@@ -41,6 +41,7 @@ _ropsim() {
         --entry) _ropsim_words "rgbz z zo"; return ;;
         --program) _ropsim_words "nearest-k order-and-blend mlab"; _ropsim_files kb; return ;;
         --set) _ropsim_words "$(_ropsim_names params | sed 's/$/=/')"; compopt -o nospace; return ;;
+        --samples) _ropsim_words "1 4 8"; return ;;
         --size) _ropsim_words "256x256 512x512 1024x1024 1920x1080"; return ;;
         --camera) _ropsim_words "auto 0"; return ;;
         --gpus) _ropsim_list "$(_ropsim_names gpus)"; return ;;

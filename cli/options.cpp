@@ -34,6 +34,12 @@ void parse_size(const std::string& text, Request& request) {
     request.height = size->height;
 }
 
+std::uint32_t parse_samples(const std::string& text) {
+    const auto samples = reports::sample_count(text);
+    if (!samples) throw sim::InputError(fmt::format("--samples: expected 1, 4 or 8, got '{}'", text));
+    return *samples;
+}
+
 unsigned parse_threads(const std::string& text) {
     constexpr unsigned most = 1024;
     const auto number = parse<unsigned>(text);
@@ -109,6 +115,7 @@ reports::ComparisonRequest request_of(const FrameOptions& options, const std::st
     request.designs = parse_designs(designs);
     request.only_able_designs = designs.empty() || designs == "all";
     parse_size(options.size, request);
+    request.samples = parse_samples(options.samples);
     if (!options.k.empty()) request.workload_settings.push_back("k=" + options.k);
     if (!options.entry.empty()) request.workload_settings.push_back("entry=" + options.entry);
     if (!options.program.empty()) request.workload_settings.push_back("program=" + options.program);

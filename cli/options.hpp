@@ -24,6 +24,7 @@ struct FrameOptions {
     std::string program;
     std::string light;
     std::string size = "512x512";
+    std::string samples = "1";
     std::string camera = "auto";
     std::string seed = "1";
     std::string threads;

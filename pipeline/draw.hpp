@@ -4,6 +4,7 @@
 // guarantees that every index, offset and length is in range (validate() checks it).
 #pragma once
 
+#include "pipeline/sample_planes.hpp"
 #include "sim/field.hpp"
 
 #include <array>
@@ -210,8 +211,13 @@ struct View {
     glm::mat4 view{1.0F};
     glm::mat4 projection{1.0F}; ///< to clip space with -w <= z <= w mapped to window depth [0,1] by (z/w+1)/2
     std::uint32_t width = 512, height = 512; ///< pixels, 1 to 16384
+    std::uint32_t samples = 1;               ///< of each pixel: 1, 4 or 8
 
     std::size_t pixels() const { return std::size_t{width} * height; }
+    /// Rows of its surfaces, those of all samples.
+    std::uint32_t rows() const { return samples * plane_rows(height, samples); }
+    std::size_t places() const { return std::size_t{width} * rows(); }
+    std::uint64_t samples_drawn() const { return std::uint64_t{pixels()} * samples; }
 };
 
 /// The points centre + a * u + b * v with a and b in [-1,1], in world space; u and v are orthogonal.

@@ -2,10 +2,14 @@
 //
 // It is computed by functional/ (pure, parallel, the same for any thread count) and replayed by every design. Quads lie
 // in submission order: by draw, instance, primitive, clipped part, 8x8 tile (row by row within the triangle's bounding
-// tiles), 2x2 quad (row by row within the tile).
+// tiles), 2x2 quad (row by row within the tile), sample.
+//
+// With several samples to a pixel, each quad of pixels is a *group*: a sample quad for every sample that the triangle
+// covers in any of its pixels, one behind the other. A group is shaded once: its sample quads have equal colours.
 #pragma once
 
 #include "pipeline/output/kbuffer.hpp"
+#include "pipeline/sample_planes.hpp"
 
 #include <array>
 #include <cstdint>
@@ -18,14 +22,16 @@ namespace pipeline {
 /// Number of a quad in its stream; the raster index of the specification.
 using QuadId = std::uint32_t;
 
-/// A 2x2 block of pixels touched by one triangle. Pixel i of the quad is (x + i % 2, y + i / 2), row 0 is the top row.
+/// A 2x2 block of pixels, or of one sample of each, touched by one triangle. Pixel i of the quad is the place
+/// (x + i % 2, y + i / 2), see sample_planes.hpp; row 0 is the top row.
 struct Quad {
     std::uint16_t x = 0;        ///< even
-    std::uint16_t y = 0;        ///< even
+    std::uint16_t y = 0;        ///< even; beyond the picture's height for samples but the first
     std::uint32_t triangle = 0; ///< index into FragmentStream::triangles
-    std::uint8_t covered = 0;   ///< bit i: the triangle covers the centre of pixel i
+    std::uint8_t covered = 0;   ///< bit i: the triangle covers the centre of pixel i, or this sample of it
     std::uint8_t alive = 0;     ///< covered and not discarded by the shader (alpha test)
-    std::uint16_t reserved = 0;
+    std::uint8_t sample = 0;
+    std::uint8_t more = 0; ///< sample quads of its group that follow
 };
 static_assert(sizeof(Quad) == 12);
 
@@ -34,7 +40,7 @@ struct Triangle {
     std::uint32_t draw = 0;      ///< index into the draw list the stream was made from
     std::uint32_t primitive = 0; ///< index into FragmentStream::primitives
     QuadId first_quad = 0;
-    std::uint32_t quads = 0; ///< may be 0: covers no pixel centre
+    std::uint32_t quads = 0; ///< of all samples; may be 0: covers no pixel centre, or no sample
     std::uint32_t tiles = 0; ///< 8x8 tiles the rasterizer visits, at least 1
 };
 
@@ -60,7 +66,8 @@ struct DrawRange {
 };
 
 struct FragmentStream {
-    std::uint32_t width = 0, height = 0;
+    std::uint32_t width = 0, height = 0; ///< pixels
+    std::uint32_t samples = 1;           ///< of a pixel
 
     std::vector<DrawRange> draws;
     std::vector<Primitive> primitives;
@@ -68,13 +75,16 @@ struct FragmentStream {
     std::vector<Quad> quads;
 
     // Parallel to `quads`; colours and texture lines are empty when nothing needs them.
-    std::vector<std::array<float, 4>> depths;      ///< window depth in [0,1] at each pixel centre
+    std::vector<std::array<float, 4>> depths;      ///< window depth in [0,1] at each pixel centre, or sample
     std::vector<std::array<glm::vec4, 4>> colours; ///< shaded linear RGBA, not premultiplied
     std::vector<std::uint32_t> texture_lines;      ///< 64-byte line of the quad's texture fetch, ~0 = no fetch
 
-    std::uint64_t fragments = 0;           ///< covered pixels over all quads
+    std::uint64_t groups = 0;              ///< quads of pixels; as many as `quads` with one sample
+    std::uint64_t fragments = 0;           ///< covered pixels over all quads, or samples
     std::uint64_t fragments_discarded = 0; ///< covered but not alive
 
+    /// Rows of the planes of all samples.
+    std::uint32_t rows() const { return samples * plane_rows(height, samples); }
     std::uint32_t draw_of(QuadId quad) const { return triangles[quads[quad].triangle].draw; }
     /// What a modify program may read of pixel `lane` (0 to 3) of a quad.
     Fragment fragment(QuadId quad, std::size_t lane) const {

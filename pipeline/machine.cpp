@@ -12,6 +12,15 @@
 
 namespace pipeline {
 
+namespace {
+
+// Fixed function always works per sample.
+bool multisampled(const Frame& frame, const Pass& pass, const KBufferPlan& plan) {
+    return frame.view.samples > 1 && (!pass.kbuffer || plan.works_per_sample());
+}
+
+} // namespace
+
 Machine::Machine(const GpuParams& gpu, const Frame& frame, std::span<const FragmentStream> streams,
                  const KBufferDesign& design, const MachineOptions& options)
     : gpu_(gpu), frame_(&frame), streams_(streams), design_(&design), options_(options) {
@@ -26,6 +35,10 @@ Machine::Machine(const GpuParams& gpu, const Frame& frame, std::span<const Fragm
     } else {
         plan_.site = UpdateSite::passes;
     }
+    if (frame.view.samples > 1 && plan_.works_per_sample() && plan_.scheduling.guard != nullptr)
+        throw sim::InputError(fmt::format(
+            "design {}: cannot draw {} samples per pixel: its guard sees sample quads, and it works on groups",
+            design.id(), frame.view.samples));
     build();
     link();
 }
@@ -187,14 +200,16 @@ bool Machine::uses_colour() const {
 
 std::uint64_t Machine::total_quads(const Frame& frame, std::span<const FragmentStream> streams,
                                    const KBufferDesign& design) {
-    const std::uint32_t passes =
-        frame.program != nullptr ? geometry_passes(design.plan(*frame.program, frame.view_of_kbuffer()), *frame.program)
-                                 : 1;
+    const KBufferPlan plan =
+        frame.program != nullptr ? design.plan(*frame.program, frame.view_of_kbuffer()) : KBufferPlan{};
+    const std::uint32_t passes = frame.program != nullptr ? geometry_passes(plan, *frame.program) : 1;
     std::uint64_t quads = 0;
     std::size_t next = 0;
     for (const Pass& pass : frame.passes) {
         if (pass.kind != PassKind::draw) continue;
-        quads += streams[next++].quads.size() * (pass.kbuffer ? passes : 1);
+        const FragmentStream& stream = streams[next++];
+        quads += (pass.kbuffer ? passes : 1) *
+                 (multisampled(frame, pass, plan) ? stream.groups : std::uint64_t{stream.quads.size()});
     }
     return quads;
 }
@@ -250,15 +265,17 @@ void Machine::run_draw(const FragmentStream& stream, const Needs& needs) {
 
 void Machine::clear(const Pass& pass) {
     begin(pass.name);
-    const std::size_t pixels = frame_->view.pixels(), kbuffer_pixels = frame_->view_of_kbuffer().pixels();
+    const std::size_t places = frame_->view.places();
+    const std::uint64_t pixels = frame_->view.samples_drawn(),
+                        kbuffer_pixels = frame_->view_of_kbuffer().samples_drawn();
     std::uint64_t bytes = 0;
     for (const std::string& surface : pass.writes) {
         if (surface == "depth") {
-            units_->fixed.depth.assign(pixels, farthest_depth(frame_->depth_format));
+            units_->fixed.depth.assign(places, farthest_depth(frame_->depth_format));
             bytes += pixels * depth_bytes(frame_->depth_format);
         }
         if (surface == "colour") {
-            units_->fixed.colour.assign(pixels, through_format(frame_->colour_format, frame_->background));
+            units_->fixed.colour.assign(places, through_format(frame_->colour_format, frame_->background));
             bytes += pixels * colour_bytes(frame_->colour_format);
         }
         // Peeling clears its layers one by one instead, lists their heads.
@@ -273,11 +290,12 @@ void Machine::clear(const Pass& pass) {
 void Machine::draw(const Pass& pass, const FragmentStream& stream) {
     PassContext& context = units_->pass;
     FixedSurfaces& fixed = units_->fixed;
-    const std::size_t pixels = frame_->view.pixels();
+    const std::size_t places = frame_->view.places();
     context.layout = layout_of(frame_->view_of(pass));
-    fixed.winner.resize(pixels, ~QuadId{0});
-    if (pass.depth.test || pass.depth.write) fixed.depth.resize(pixels, farthest_depth(frame_->depth_format));
-    if (pass.colour) fixed.colour.resize(pixels, through_format(frame_->colour_format, frame_->background));
+    context.multisampled = multisampled(*frame_, pass, plan_);
+    fixed.winner.resize(places, ~QuadId{0});
+    if (pass.depth.test || pass.depth.write) fixed.depth.resize(places, farthest_depth(frame_->depth_format));
+    if (pass.colour) fixed.colour.resize(places, through_format(frame_->colour_format, frame_->background));
     context.depth = pass.depth;
     context.blend = pass.blend;
     context.colour_write = pass.colour;

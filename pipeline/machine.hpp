@@ -63,7 +63,7 @@ class Machine {
     void keep_entry(std::size_t pixel, std::uint32_t entry, QuadId id, const FragmentStream& stream);
     void draw_lists(const Pass& pass, const FragmentStream& stream);
     std::uint64_t run_lists(const FragmentStream& stream);
-    bool overflowed(std::size_t pixel, std::uint32_t fragments) const;
+    bool overflowed(std::size_t place, std::uint32_t fragments) const;
     static std::uint32_t geometry_passes(const KBufferPlan& plan, const ModifyProgram& program);
     bool pass_reads_textures() const;
     bool peels() const; ///< the k-buffer pass becomes one pass per layer
@@ -74,18 +74,20 @@ class Machine {
     void run_draw(const FragmentStream& stream, const Needs& needs);
     void stream_surface(std::uint64_t read_bytes, std::uint64_t write_bytes);
     void set_costs(const Needs& needs);
-    SurfaceLayout layout_of(std::uint32_t width, std::uint32_t height) const {
-        return {width, height, gpu_.memory.partitions};
+    SurfaceLayout layout_of(std::uint32_t width, std::uint32_t height, std::uint32_t samples = 1) const {
+        return {width, height, gpu_.memory.partitions, samples};
     }
-    SurfaceLayout layout_of(const View& view) const { return layout_of(view.width, view.height); }
+    SurfaceLayout layout_of(const View& view) const { return layout_of(view.width, view.height, view.samples); }
     std::uint32_t most_tiles() const; ///< of a surface that a pass draws onto
     std::vector<float> kbuffer_image() const;
     std::vector<float> depth_surface() const;
     void list_units(RunResult& result) const;
     void collect_pixels(RunResult& result, const ReferenceImage& reference) const;
-    /// Where colour or depth differ from the reference: 1.
-    std::vector<std::uint8_t> wrong_fixed_pixels(const RunResult& result, const ReferenceImage& reference) const;
-    bool explained(std::size_t pixel) const; ///< a hazard happened here
+    void judge_pixels(RunResult& result, const ReferenceImage& reference, std::vector<std::uint8_t> wrong,
+                      const std::vector<std::uint8_t>& tied) const;
+    /// Places where colour or depth differ from the reference: 1.
+    std::vector<std::uint8_t> wrong_fixed_places(const RunResult& result, const ReferenceImage& reference) const;
+    bool explained(std::size_t place) const; ///< a hazard happened here
     void collect_hazards(RunResult& result) const;
     void collect_counters(RunResult& result) const;
     void collect_vertex_caches(RunResult& result) const;

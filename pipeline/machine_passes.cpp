@@ -19,7 +19,8 @@ std::uint32_t Machine::geometry_passes(const KBufferPlan& plan, const ModifyProg
 void Machine::draw_layers(const Pass& pass, const FragmentStream& stream) {
     PassContext& context = units_->pass;
     const ModifyProgram& program = *frame_->program;
-    const std::size_t pixels = frame_->view_of_kbuffer().pixels();
+    const std::size_t pixels = frame_->view_of_kbuffer().places();
+    const std::uint64_t drawn = frame_->view_of_kbuffer().samples_drawn();
     const bool both_ends = plan_.passes.capture == PassCapture::nearest_farthest;
     units_->drawn = std::exchange(units_->fixed, {});
     context.read_only_depth = pass.depth.test ? &units_->drawn.depth : nullptr;
@@ -46,7 +47,7 @@ void Machine::draw_layers(const Pass& pass, const FragmentStream& stream) {
             units_->fixed.far_winner.assign(pixels, ~QuadId{0});
         }
         if (!gpu_.rop.fast_clear)
-            stream_surface(0, pixels * (context.depth_bytes + (context.colour_write ? context.colour_bytes : 0)));
+            stream_surface(0, drawn * (context.depth_bytes + (context.colour_write ? context.colour_bytes : 0)));
         if (plan_.passes.capture == PassCapture::range) {
             context.range = program.range(i);
         } else if (i > 0) {
@@ -63,7 +64,7 @@ void Machine::draw_layers(const Pass& pass, const FragmentStream& stream) {
             near_layers = {{units_->fixed.depth, units_->fixed.winner}};
         }
         const bool read_again = i + 1 < passes && plan_.passes.capture != PassCapture::range;
-        if (read_again) stream_surface(pixels * context.depth_bytes, pixels * context.depth_bytes);
+        if (read_again) stream_surface(drawn * context.depth_bytes, drawn * context.depth_bytes);
         end();
     }
     for (std::size_t pixel = 0; both_ends && pixel < pixels; ++pixel)
@@ -77,7 +78,7 @@ void Machine::draw_layers(const Pass& pass, const FragmentStream& stream) {
 void Machine::clear_layers() {
     const ModifyProgram& program = *frame_->program;
     const std::size_t floats = program.floats_per_pixel();
-    layers_.resize(frame_->view_of_kbuffer().pixels() * floats);
+    layers_.resize(frame_->view_of_kbuffer().places() * floats);
     for (std::size_t at = 0; at < layers_.size(); at += floats) program.clear(layers_.data() + at);
 }
 
@@ -112,7 +113,7 @@ void Machine::keep_entry(std::size_t pixel, std::uint32_t entry, QuadId id, cons
 void Machine::draw_lists(const Pass& pass, const FragmentStream& stream) {
     PassContext& context = units_->pass;
     const ListsSite& site = plan_.lists;
-    const std::size_t pixels = frame_->view_of_kbuffer().pixels();
+    const std::uint64_t pixels = frame_->view_of_kbuffer().samples_drawn();
     context.read_only_depth = pass.depth.test ? &units_->fixed.depth : nullptr;
     context.end = FragmentEnd::kbuffer_list;
     for (std::uint32_t i = 0; i < site.passes; ++i) {
@@ -135,7 +136,7 @@ std::uint64_t Machine::run_lists(const FragmentStream& stream) {
     const SurfaceLayout& layout = units_->pass.layout;
     std::uint64_t kept = 0;
     std::array<float, largest_entry> entry;
-    for (std::uint32_t y = 0; y < layout.height; ++y)
+    for (std::uint32_t y = 0; y < layout.rows(); ++y)
         for (std::uint32_t x = 0; x < layout.width; ++x) {
             const std::uint32_t lane = y % 2 * 2 + x % 2;
             float* pixel = layers_.data() + (std::size_t{y} * layout.width + x) * program.floats_per_pixel();
@@ -149,10 +150,10 @@ std::uint64_t Machine::run_lists(const FragmentStream& stream) {
 }
 
 // Whether more fragments came to a pixel than the design can hold; what it shows there is not meant to be right.
-bool Machine::overflowed(std::size_t pixel, std::uint32_t fragments) const {
+bool Machine::overflowed(std::size_t place, std::uint32_t fragments) const {
     if (!frame_->needs.kbuffer) return false;
     const std::size_t width = frame_->view_of_kbuffer().width;
-    const auto x = static_cast<std::uint32_t>(pixel % width), y = static_cast<std::uint32_t>(pixel / width);
+    const auto x = static_cast<std::uint32_t>(place % width), y = static_cast<std::uint32_t>(place / width);
     if (units_->lists) {
         const ListsSite& site = plan_.lists;
         return units_->lists->overflowed(units_->pass.layout.block_of(x, y), y % 2 * 2 + x % 2) ||

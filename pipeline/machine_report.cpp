@@ -1,4 +1,5 @@
 // What a machine says after a run: pixels against the reference, hazards, counters by stage, pass and draw.
+#include "pipeline/functional/sample_pattern.hpp"
 #include "pipeline/image_difference.hpp"
 #include "pipeline/machine_units.hpp"
 #include "pipeline/memory/unit_report.hpp"
@@ -40,6 +41,17 @@ Json cache_report(std::uint64_t hits, std::uint64_t misses) {
 Json link_report(std::uint64_t bytes, std::uint64_t fragments) {
     return {{"bytes", bytes},
             {"per_fragment", fragments == 0 ? 0.0 : static_cast<double>(bytes) / static_cast<double>(fragments)}};
+}
+
+/// The bits that any sample of a pixel has.
+std::vector<std::uint8_t> of_pixels(const View& view, std::vector<std::uint8_t> places) {
+    const std::size_t pixels = std::size_t{view.width} * view.height;
+    for (std::uint32_t sample = 1; sample < view.samples; ++sample) {
+        const auto plane = plane_of_sample(view, sample, std::span(places), 1);
+        for (std::size_t pixel = 0; pixel < pixels; ++pixel) places[pixel] |= plane[pixel];
+    }
+    places.resize(pixels);
+    return places;
 }
 
 } // namespace
@@ -101,54 +113,68 @@ void Machine::list_units(RunResult& result) const {
 }
 
 void Machine::collect_pixels(RunResult& result, const ReferenceImage& reference) const {
-    std::vector<std::uint8_t> tied;
+    std::vector<std::uint8_t> wrong, tied;
     if (frame_->needs.kbuffer) {
         result.kbuffer = kbuffer_image();
         KBufferDifference difference = compare_kbuffers(*frame_->program, result.kbuffer, reference.kbuffer);
-        result.wrong_mask = std::move(difference.wrong);
+        wrong = std::move(difference.wrong);
         result.lost_fragments = difference.lost_fragments;
         tied = std::move(difference.tied);
         result.layers = std::move(difference.layers);
     }
-    const std::size_t pixels = frame_->view_of_kbuffer().pixels();
-    result.wrong_mask.resize(pixels);
     if (frame_->needs.colour_surface) result.colour = colour_surface();
     if (frame_->needs.depth) result.depth = depth_surface();
-    std::vector<std::uint8_t> seen = wrong_fixed_pixels(result, reference);
-    const auto count = [](const auto& mask) {
-        return static_cast<std::uint64_t>(std::count(mask.begin(), mask.end(), 1));
-    };
-    if (frame_->kbuffer_view) { // surfaces of other pixels, which nothing explains
-        result.wrong_pixels = result.unexplained_pixels = count(seen);
-    } else {
-        for (std::size_t pixel = 0; pixel < pixels; ++pixel) result.wrong_mask[pixel] |= seen[pixel];
-    }
-    result.wrong_pixels += count(result.wrong_mask);
-    for (std::size_t pixel = 0; frame_->needs.kbuffer && pixel < result.wrong_mask.size(); ++pixel) {
-        const bool overflow = overflowed(pixel, reference.depth_complexity[pixel]);
-        result.overflow_pixels += overflow ? 1 : 0;
-        if (result.wrong_mask[pixel] == 0) continue;
-        result.tied_pixels += tied[pixel];
-        result.unexplained_pixels += explained(pixel) || overflow || (plan_.order_free && tied[pixel] != 0) ? 0 : 1;
-    }
+    const std::vector<std::uint8_t> fixed = wrong_fixed_places(result, reference);
+    wrong.resize(frame_->view_of_kbuffer().places());
+    if (frame_->kbuffer_view) // surfaces of other pixels, which nothing explains
+        result.wrong_pixels = result.unexplained_pixels =
+            static_cast<std::uint64_t>(std::count(fixed.begin(), fixed.end(), 1));
+    else
+        for (std::size_t place = 0; place < wrong.size(); ++place) wrong[place] |= fixed[place];
+    judge_pixels(result, reference, std::move(wrong), tied);
 }
 
-std::vector<std::uint8_t> Machine::wrong_fixed_pixels(const RunResult& result, const ReferenceImage& reference) const {
-    std::vector<std::uint8_t> wrong(frame_->view.pixels());
+std::vector<std::uint8_t> Machine::wrong_fixed_places(const RunResult& result, const ReferenceImage& reference) const {
+    std::vector<std::uint8_t> wrong(frame_->view.places());
     if (frame_->needs.colour_surface) {
         CHECK(result.colour.size() == reference.colour.size());
         for (std::size_t at = 0; at < result.colour.size(); ++at)
             if (std::bit_cast<std::uint32_t>(result.colour[at]) != std::bit_cast<std::uint32_t>(reference.colour[at]))
                 wrong[at / 4] = 1;
     }
-    for (std::size_t pixel = 0; pixel < result.depth.size() && pixel < reference.depth.size(); ++pixel)
-        if (result.depth[pixel] != reference.depth[pixel]) wrong[pixel] = 1;
+    for (std::size_t place = 0; place < result.depth.size() && place < reference.depth.size(); ++place)
+        if (result.depth[place] != reference.depth[place]) wrong[place] = 1;
     return wrong;
 }
 
-bool Machine::explained(std::size_t pixel) const {
+// A pixel is wrong where any of its samples is, and so on; tied where all that is wrong of it is a tie.
+void Machine::judge_pixels(RunResult& result, const ReferenceImage& reference, std::vector<std::uint8_t> wrong,
+                           const std::vector<std::uint8_t>& tied) const {
+    constexpr std::uint8_t is_wrong = 1, more_than_tied = 2, has_overflow = 4, unexplained = 8;
+    for (std::size_t place = 0; frame_->needs.kbuffer && place < wrong.size(); ++place) {
+        const bool overflow = overflowed(place, reference.depth_complexity[place]);
+        const bool tie = tied[place] != 0;
+        std::uint8_t facts = overflow ? has_overflow : 0;
+        if (wrong[place] != 0) {
+            facts |= is_wrong;
+            if (!tie) facts |= more_than_tied;
+            if (!explained(place) && !overflow && !(plan_.order_free && tie)) facts |= unexplained;
+        }
+        wrong[place] = facts;
+    }
+    result.wrong_mask = of_pixels(frame_->view_of_kbuffer(), std::move(wrong));
+    for (std::uint8_t& facts : result.wrong_mask) {
+        result.wrong_pixels += (facts & is_wrong) != 0 ? 1 : 0;
+        result.tied_pixels += frame_->needs.kbuffer && (facts & (is_wrong | more_than_tied)) == is_wrong ? 1 : 0;
+        result.overflow_pixels += (facts & has_overflow) != 0 ? 1 : 0;
+        result.unexplained_pixels += (facts & unexplained) != 0 ? 1 : 0;
+        facts &= is_wrong;
+    }
+}
+
+bool Machine::explained(std::size_t place) const {
     const std::size_t width = frame_->view_of_kbuffer().width;
-    const auto x = static_cast<std::uint32_t>(pixel % width), y = static_cast<std::uint32_t>(pixel / width);
+    const auto x = static_cast<std::uint32_t>(place % width), y = static_cast<std::uint32_t>(place / width);
     return units_->kbuffer && units_->history->classes(units_->pass.layout.block_of(x, y), y % 2 * 2 + x % 2) != 0;
 }
 
@@ -195,11 +221,15 @@ void Machine::collect_hazards(RunResult& result) const {
 
     if (total == 0) return;
     const SurfaceLayout& layout = units.pass.layout;
-    result.hazard_mask.resize(std::size_t{layout.width} * layout.height);
-    for (std::uint32_t y = 0; y < layout.height; ++y)
+    result.hazard_mask.resize(frame_->view_of_kbuffer().places());
+    for (std::uint32_t y = 0; y < layout.rows(); ++y)
         for (std::uint32_t x = 0; x < layout.width; ++x)
             result.hazard_mask[std::size_t{y} * layout.width + x] =
                 units.history->classes(layout.block_of(x, y), y % 2 * 2 + x % 2);
+    if (layout.samples == 1) return;
+    result.hazard_mask = of_pixels(frame_->view_of_kbuffer(), std::move(result.hazard_mask));
+    const auto spared = std::count(result.hazard_mask.begin(), result.hazard_mask.end(), 0);
+    result.hazards.pixels = result.hazard_mask.size() - static_cast<std::size_t>(spared);
 }
 
 void Machine::collect_counters(RunResult& result) const {

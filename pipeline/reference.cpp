@@ -214,7 +214,7 @@ class Reference {
         CHECK(next_stream_ < streams_.size());
         const FragmentStream& stream = streams_[next_stream_++];
         const View& view = frame_.view_of(pass);
-        CHECK(stream.width == view.width && stream.height == view.height);
+        CHECK(stream.width == view.width && stream.height == view.height && stream.samples == view.samples);
         // A k-buffer that a light sees is not tested against what the eye sees.
         CHECK(!(pass.kbuffer && frame_.kbuffer_view) || !(pass.depth.test || pass.depth.write || pass.colour));
         CHECK(!pass.colour || stream.colours.size() == stream.quads.size());

@@ -13,14 +13,15 @@
 
 namespace pipeline {
 
-/// Surfaces after a frame; row 0 first. A surface that no pass writes is empty.
+/// Surfaces after a frame; row 0 first, planes of samples one below the other (sample_planes.hpp). A surface that no
+/// pass writes is empty.
 struct ReferenceImage {
-    std::vector<float> kbuffer; ///< program->floats_per_pixel() floats per pixel of its view
-    std::vector<float> depth;   ///< window depth per pixel, as the depth format holds it
-    std::vector<float> colour;  ///< RGBA per pixel of the "colour" surface, as the colour format holds it
+    std::vector<float> kbuffer; ///< program->floats_per_pixel() floats per place of its view
+    std::vector<float> depth;   ///< window depth per place, as the depth format holds it
+    std::vector<float> colour;  ///< RGBA per place of the "colour" surface, as the colour format holds it
     std::vector<float> picture; ///< RGBA per pixel that the resolve pass makes; empty without one
 
-    /// Per pixel of the k-buffer: alive fragments that reached it; the depth test, in frames without a k-buffer.
+    /// Per place of the k-buffer: alive fragments that reached it; the depth test, in frames without a k-buffer.
     std::vector<std::uint32_t> depth_complexity;
     std::uint64_t accepted_insertions = 0; ///< k-buffer updates that changed their pixel
 

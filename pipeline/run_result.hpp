@@ -37,7 +37,8 @@ struct RunResult {
     double core_mhz = 0;
     sim::Cycle cycles = 0;        ///< core cycles from the first command to the last byte written
     double sort_milliseconds = 0; ///< of the computer's time before each frame
-    std::uint64_t fragments = 0;  ///< fragments that reached the k-buffer (or depth test), over all passes
+    std::uint64_t fragments = 0;  ///< fragments that reached the k-buffer (or depth test), over all passes; one for
+                                  ///< each sample of a pixel
 
     HazardCounts hazards;
     std::vector<HazardPair> pairs;              ///< the first `pairs_kept` in order of the victim's store
@@ -45,7 +46,7 @@ struct RunResult {
     std::uint64_t max_staleness = 0;
     double mean_staleness = 0;
     std::uint64_t lost_updates = 0;    ///< fragments whose store was overwritten by a stale value
-    std::uint64_t wrong_pixels = 0;    ///< pixels that differ from the reference in any bit
+    std::uint64_t wrong_pixels = 0;    ///< pixels that differ from the reference in any bit of any sample
     std::uint64_t tied_pixels = 0;     ///< of those, pixels that differ among fragments of equal depth only
     std::uint64_t overflow_pixels = 0; ///< pixels with more fragments than the design can hold
     std::uint64_t unexplained_pixels =
@@ -53,10 +54,12 @@ struct RunResult {
     std::uint64_t lost_fragments = 0; ///< entries of the reference that no layer of the run holds
     std::vector<LayerErrors> layers;
 
-    // Per pixel, row 0 first; k-buffer and masks of the view of the k-buffer, colour and depth of the frame's view.
-    std::vector<float> kbuffer;            ///< floats_per_pixel floats each; empty when the frame has no k-buffer
-    std::vector<float> colour;             ///< RGBA of the "colour" surface; empty when the frame has none
-    std::vector<float> depth;              ///< window depths of the "depth" surface; empty when the frame has none
+    // Per place, row 0 first: with one sample, width * height pixels; see sample_planes.hpp. The k-buffer and what
+    // follows from it are of its own view, colour and depth of the frame's.
+    std::vector<float> kbuffer; ///< floats_per_pixel floats each; empty when the frame has no k-buffer
+    std::vector<float> colour;  ///< RGBA of the "colour" surface; empty when the frame has none
+    std::vector<float> depth;   ///< window depths of the "depth" surface; empty when the frame has none
+    // Per pixel, row 0 first: what happened to any of its samples.
     std::vector<std::uint8_t> hazard_mask; ///< bit i: hazard class i happened here; empty when there was none
     std::vector<std::uint8_t> wrong_mask;  ///< 1 where the pixel differs from the reference
 

@@ -5,6 +5,7 @@
 #include "pipeline/functional/composite.hpp"
 #include "pipeline/functional/frame_streams.hpp"
 #include "pipeline/functional/parallel.hpp"
+#include "pipeline/functional/sample_pattern.hpp"
 #include "pipeline/machine.hpp"
 #include "reports/numbers.hpp"
 #include "traces/camera.hpp"
@@ -56,7 +57,8 @@ void read_scene(const ComparisonRequest& request, ComparisonInput& input) {
     traces::WorkloadOptions options;
     for (const std::string& setting : request.workload_settings) options.set(setting);
     const traces::Scene scene = traces::load_scene(request.scene);
-    const pipeline::View view = traces::make_view(scene, request.camera, request.width, request.height);
+    pipeline::View view = traces::make_view(scene, request.camera, request.width, request.height);
+    view.samples = request.samples;
     input.frame = std::make_shared<const pipeline::Frame>(traces::build_frame(scene, view, request.workload, options));
     input.scene = facts_of(scene, request.camera);
 }
@@ -84,9 +86,9 @@ void check_designs(ComparisonInput& input, bool only_able) {
 // A frame that cannot fit would be ended by the system without a word.
 void check_memory(const ComparisonInput& input, const ComparisonRequest& request) {
     const pipeline::Frame& frame = *input.frame;
-    const auto pixels = static_cast<double>(frame.view.pixels());
+    const auto pixels = static_cast<double>(frame.view.places());
     const double kbuffer = frame.program ? static_cast<double>(frame.program->bytes_per_pixel()) *
-                                               static_cast<double>(frame.view_of_kbuffer().pixels()) / pixels
+                                               static_cast<double>(frame.view_of_kbuffer().places()) / pixels
                                          : 0;
     constexpr double colour = 16, depth = 12;
     // One k-buffer, colour and depth surface for the reference and each design; those that run also hold older
@@ -96,8 +98,10 @@ void check_memory(const ComparisonInput& input, const ComparisonRequest& request
         pixels * ((kbuffer + colour + depth) * (1 + static_cast<double>(input.designs.size())) + running * kbuffer);
     const double here = static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
     if (needed > here)
-        throw sim::InputError(fmt::format("--size {}x{}: these designs need at least {} of memory, this machine has {}",
-                                          request.width, request.height, bytes_text(needed), bytes_text(here)));
+        throw sim::InputError(
+            fmt::format("--size {}x{}{}: these designs need at least {} of memory, this machine has {}", request.width,
+                        request.height, request.samples == 1 ? "" : fmt::format(" --samples {}", request.samples),
+                        bytes_text(needed), bytes_text(here)));
 }
 
 std::vector<pipeline::FragmentStream> shade(const pipeline::Frame& frame, unsigned threads,
@@ -127,7 +131,20 @@ std::shared_ptr<const SubmittedFrame> submit(const ComparisonInput& input, const
 
 std::vector<float> picture_of(const pipeline::Frame& frame, const std::vector<float>& kbuffer,
                               const std::vector<float>& colour, const std::vector<float>& depth) {
-    return kbuffer.empty() ? colour : pipeline::composite(frame, {kbuffer, colour, depth});
+    if (!kbuffer.empty()) return pipeline::composite(frame, {kbuffer, colour, depth});
+    return colour.empty() ? colour : pipeline::mean_of_samples(frame.view, colour, 4);
+}
+
+// What is shown of several samples is the first one's.
+void keep_first_sample(std::vector<float>& surface, const pipeline::View& view) {
+    surface.resize(surface.size() / view.places() * view.pixels());
+    surface.shrink_to_fit();
+}
+
+void keep_first_sample(FramePixels& pixels, const pipeline::Frame& frame) {
+    keep_first_sample(pixels.kbuffer, frame.view_of_kbuffer());
+    keep_first_sample(pixels.colour, frame.view);
+    keep_first_sample(pixels.depth, frame.view);
 }
 
 // Where no pixel is wrong, the picture is that of the reference, if it is of the same submission.
@@ -138,7 +155,17 @@ FramePixels run_pixels(const ComparisonInput& input, const std::vector<float>& r
     pixels.composite = run.wrong_pixels == 0 && !submitted_anew
                            ? reference
                            : picture_of(*input.frame, pixels.kbuffer, pixels.colour, pixels.depth);
+    keep_first_sample(pixels, *input.frame);
     return pixels;
+}
+
+std::vector<std::uint32_t> most_of_samples(const pipeline::View& view, const std::vector<std::uint32_t>& places) {
+    std::vector<std::uint32_t> most(std::size_t{view.width} * view.height);
+    for (std::uint32_t sample = 0; sample < view.samples; ++sample) {
+        const auto plane = pipeline::plane_of_sample(view, sample, std::span(places), 1);
+        for (std::size_t pixel = 0; pixel < most.size(); ++pixel) most[pixel] = std::max(most[pixel], plane[pixel]);
+    }
+    return most;
 }
 
 pipeline::RunResult run_design(const ComparisonInput& input, std::size_t number, const Supervision& supervision) {
@@ -233,7 +260,8 @@ Comparison compare(ComparisonInput input, const Supervision& supervision) {
     comparison.reference.kbuffer = std::move(reference.kbuffer);
     comparison.reference.colour = std::move(reference.colour);
     comparison.reference.depth = std::move(reference.depth);
-    comparison.depth_complexity = std::move(input.reference.depth_complexity);
+    keep_first_sample(comparison.reference, *input.frame);
+    comparison.depth_complexity = most_of_samples(input.frame->view_of_kbuffer(), input.reference.depth_complexity);
     comparison.scene = std::move(input.scene);
     comparison.gpu = std::move(input.gpu);
     comparison.frame = std::move(input.frame);

@@ -20,6 +20,7 @@ struct ComparisonRequest {
     std::string scene;           ///< as traces::load_scene takes it
     std::string camera = "auto"; ///< as traces::make_view takes it
     std::uint32_t width = 512, height = 512;
+    std::uint32_t samples = 1; ///< of a pixel: 1, 4 or 8
     std::string workload = "transparency";
     std::vector<std::string> workload_settings; ///< "key=value"
     std::string gpu = "neutral";

@@ -26,7 +26,8 @@ struct SceneFacts {
     std::vector<std::string> notes; ///< what of the input is not drawn
 };
 
-/// The frame after the last pass, row 0 first.
+/// The frame after the last pass, row 0 first. With several samples to a pixel, `composite` is their mean, and
+/// `kbuffer` that of the first.
 struct FramePixels {
     std::vector<float> kbuffer;   ///< floats_per_pixel of the program for each pixel; empty without a k-buffer
     std::vector<float> composite; ///< linear RGBA of the finished picture for each pixel; empty when no pass makes one
@@ -55,9 +56,9 @@ struct Comparison {
     std::shared_ptr<const pipeline::Frame> frame;
     std::uint64_t seed = 1;
     FramePixels reference; ///< in submission order, without time
-    std::vector<std::uint32_t>
-        depth_complexity;                  ///< fragments drawn onto each pixel of the k-buffer in one geometry pass
-    std::vector<pipeline::RunResult> runs; ///< in the order in which the designs were asked for
+    /// Fragments drawn onto each pixel of the k-buffer in one geometry pass; of several samples the most.
+    std::vector<std::uint32_t> depth_complexity;
+    std::vector<pipeline::RunResult> runs;                 ///< in the order in which the designs were asked for
     std::vector<nlohmann::ordered_json> design_parameters; ///< of each run
     std::vector<nlohmann::ordered_json> design_support;    ///< what it can be used for, of each run
     std::vector<FramePixels> pixels;                       ///< of each run
@@ -65,6 +66,7 @@ struct Comparison {
 
     std::uint32_t width() const { return frame->view.width; }
     std::uint32_t height() const { return frame->view.height; }
+    std::uint32_t samples() const { return frame->view.samples; }
     /// The k-buffer, hazards and fragments per pixel are those of another view than the picture.
     bool has_light_view() const { return frame->kbuffer_view.has_value(); }
 };

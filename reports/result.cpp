@@ -15,12 +15,19 @@ namespace {
 ordered_json scene_json(const Comparison& comparison) {
     const SceneFacts& scene = comparison.scene;
     const pipeline::Frame& frame = *comparison.frame;
-    ordered_json json = {{"name", scene.name},           {"hash", scene.hash},
-                         {"triangles", scene.triangles}, {"triangles_drawn", scene.triangles_drawn},
-                         {"vertices", scene.vertices},   {"draws", scene.draws},
-                         {"textures", scene.textures},   {"camera", scene.camera},
-                         {"width", comparison.width()},  {"height", comparison.height()},
-                         {"workload", frame.workload},   {"notes", scene.notes}};
+    ordered_json json = {{"name", scene.name},
+                         {"hash", scene.hash},
+                         {"triangles", scene.triangles},
+                         {"triangles_drawn", scene.triangles_drawn},
+                         {"vertices", scene.vertices},
+                         {"draws", scene.draws},
+                         {"textures", scene.textures},
+                         {"camera", scene.camera},
+                         {"width", comparison.width()},
+                         {"height", comparison.height()},
+                         {"samples", comparison.samples()},
+                         {"workload", frame.workload},
+                         {"notes", scene.notes}};
     if (frame.program)
         json["kbuffer"] = {{"program", frame.program->id()},
                            {"k", frame.program->k()},

@@ -1,6 +1,7 @@
 #include "reports/run_numbers.hpp"
 
 #include <algorithm>
+#include <fmt/format.h>
 
 namespace reports {
 
@@ -17,6 +18,10 @@ double hazards_per_million(const pipeline::RunResult& run) {
 
 double cycles_per_second(const pipeline::RunResult& run) {
     return run.host_seconds > 0 ? static_cast<double>(run.cycles) / run.host_seconds : 0.0;
+}
+
+std::string samples_text(const Comparison& comparison) {
+    return comparison.samples() == 1 ? "" : fmt::format(", {} samples per pixel", comparison.samples());
 }
 
 std::optional<double> bytes_over(const pipeline::RunResult& run, std::string_view link) {

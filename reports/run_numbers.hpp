@@ -5,6 +5,7 @@
 #include "reports/comparison_result.hpp"
 
 #include <optional>
+#include <string>
 #include <string_view>
 
 namespace reports {
@@ -21,6 +22,8 @@ double cycles_per_second(const pipeline::RunResult& run);
 std::optional<double> bytes_per_fragment(const pipeline::RunResult& run, std::string_view link);
 /// All bytes over a link.
 std::optional<double> bytes_over(const pipeline::RunResult& run, std::string_view link);
+/// ", 4 samples per pixel"; empty when there is one.
+std::string samples_text(const Comparison& comparison);
 /// Pixels onto which more than k fragments are drawn; 0 without a k-buffer.
 std::uint64_t overflow_pixels(const Comparison& comparison);
 

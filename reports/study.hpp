@@ -51,6 +51,7 @@ struct Study {
 
     // Designs only.
     std::string size = "256x256"; ///< may name variables
+    std::string samples = "1";    ///< of a pixel; may name variables
     std::string workload = "transparency";
     std::uint32_t seeds = 1; ///< runs of each design, with the seeds 1, 2, ...; {seed} names them
 

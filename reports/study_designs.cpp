@@ -30,6 +30,11 @@ ComparisonRequest request_of(const Study& study, const StudySeries& series, cons
                                           study.name, largest_side, size));
     request.width = pixels->width;
     request.height = pixels->height;
+    const std::string samples = filled(study.samples, point, study);
+    const auto count = sample_count(samples);
+    if (!count)
+        throw sim::InputError(fmt::format("study {}: samples: expected 1, 4 or 8, got '{}'", study.name, samples));
+    request.samples = *count;
     request.workload = study.workload;
     request.gpu = gpu;
     constexpr std::string_view workload = "workload.";

@@ -100,6 +100,8 @@ void read_measures(TomlTable& root, Study& study) {
 void read_frames(TomlTable& root, Study& study) {
     study.size = root.text_or("size", study.size);
     if (!has_variable(study.size) && !frame_size(study.size)) root.expected("size", "WIDTHxHEIGHT");
+    study.samples = root.text_or("samples", study.samples);
+    if (!has_variable(study.samples) && !sample_count(study.samples)) root.expected("samples", "1, 4 or 8");
     study.workload = root.text_or("workload", study.workload);
     expect_one_of(root, "workload", study.workload, ids_of(traces::workloads()));
     constexpr double most = 1024;

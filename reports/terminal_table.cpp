@@ -148,9 +148,9 @@ std::string heading(const Comparison& comparison, TerminalStyle style) {
     if (const std::uint64_t pixels = overflow_pixels(comparison); pixels > 0)
         overflow = fmt::format("; {} pixels have more than k fragments", with_commas(pixels));
     const std::string text =
-        fmt::format("{}: {} triangles drawn at {} x {}; {}{}; GPU {}; seed {}", comparison.scene.name,
-                    with_commas(comparison.scene.triangles_drawn), comparison.width(), comparison.height(), method,
-                    overflow, comparison.gpu.name, comparison.seed);
+        fmt::format("{}: {} triangles drawn at {} x {}{}; {}{}; GPU {}; seed {}", comparison.scene.name,
+                    with_commas(comparison.scene.triangles_drawn), comparison.width(), comparison.height(),
+                    samples_text(comparison), method, overflow, comparison.gpu.name, comparison.seed);
     return wrap(text, style.columns, 2);
 }
 

@@ -15,9 +15,8 @@ nlohmann::ordered_json support_of(const pipeline::KBufferDesign& design) {
                 names.push_back(fmt::format("{} {}", program.id, entry));
     // Where and how it updates does not depend on the program.
     const pipeline::KBufferPlan plan = design.plan(*make_program("nearest-k", "z", 4), {});
-    const bool in_rop = plan.site == pipeline::UpdateSite::blender || plan.site == pipeline::UpdateSite::passes;
     return {{"programs", std::move(names)},
-            {"antialiasing", in_rop ? "per sample" : "supersampling"},
+            {"antialiasing", plan.works_per_sample() ? "per sample" : "supersampling"},
             {"early_reject",
              plan.site == pipeline::UpdateSite::blender && plan.blender.early_reject != pipeline::EarlyReject::none}};
 }

@@ -8,9 +8,8 @@
 namespace models {
 
 /// { "programs": names with the kinds of entry, "antialiasing": "per sample" or "supersampling", "early_reject":
-/// whether fragments that no entry can take are dropped before shading }. A shader works on pixels, so designs that
-/// update in it need supersampling; units of the ROP work on samples as well (specification 004, sections 4.3.1
-/// and 6.1).
+/// whether fragments that no entry can take are dropped before shading }. For antialiasing see
+/// KBufferPlan::works_per_sample().
 nlohmann::ordered_json support_of(const pipeline::KBufferDesign& design);
 
 } // namespace models

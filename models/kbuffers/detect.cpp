@@ -42,9 +42,9 @@ class Detect final : public ConfiguredDesign<Detect, DetectParams> {
         plan.shader.version_bits = params_.version_bits;
         return plan;
     }
-    // A number per pixel of the surface, one with each quad's pixels in flight, one comparator per ROP.
+    // A number per sample of the surface, one with each quad's pixels in flight, one comparator per ROP.
     nlohmann::ordered_json area(const ModifyProgram&, const View& view, std::uint32_t quads_in_flight) const override {
-        const std::uint64_t numbers = std::uint64_t{view.width} * view.height + std::uint64_t{4} * quads_in_flight;
+        const std::uint64_t numbers = view.samples_drawn() + std::uint64_t{4} * quads_in_flight;
         return {{"added_state_bits", numbers * params_.version_bits},
                 {"added_comparators", 1},
                 {"added_alu_lanes", 0},

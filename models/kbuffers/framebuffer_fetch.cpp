@@ -22,7 +22,8 @@ struct FramebufferFetchParams {
 
     static constexpr auto fields() {
         using P = FramebufferFetchParams;
-        return std::tuple{sim::field<&P::bytes_per_pixel>("Tile memory of a pixel; programs that need more are refused")
+        return std::tuple{sim::field<&P::bytes_per_pixel>(
+                              "Tile memory of a pixel, or of each of its samples; programs that need more are refused")
                               .unit("bytes")
                               .range(16, 1024),
                           sim::field<&P::read_latency>("From a read's arrival at the tile memory to its value")
@@ -64,9 +65,9 @@ class FramebufferFetch final : public ConfiguredDesign<FramebufferFetch, Framebu
         return plan;
     }
     // Of a tiled GPU: memory of one tile of 32x32 pixels, and a place in the order unit for each quad in flight.
-    nlohmann::ordered_json area(const ModifyProgram&, const View&, std::uint32_t quads_in_flight) const override {
-        return {{"added_state_bits",
-                 std::uint64_t{1024} * params_.bytes_per_pixel * 8 + std::uint64_t{quads_in_flight} * 42},
+    nlohmann::ordered_json area(const ModifyProgram&, const View& view, std::uint32_t quads_in_flight) const override {
+        return {{"added_state_bits", std::uint64_t{1024} * view.samples * params_.bytes_per_pixel * 8 +
+                                         std::uint64_t{quads_in_flight} * 42},
                 {"added_comparators", quads_in_flight},
                 {"added_alu_lanes", 0},
                 {"per", "GPU with one tile of 32x32 pixels"}};

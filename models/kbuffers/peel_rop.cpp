@@ -59,7 +59,7 @@ class PeelRop final : public ConfiguredDesign<PeelRop, PeelRopParams> {
     }
     // Entries and fragment inside; a depth comparator per entry; the bounds of all tiles or pixels.
     nlohmann::ordered_json area(const ModifyProgram& program, const View& view, std::uint32_t) const override {
-        const std::uint64_t pixels = std::uint64_t{view.width} * view.height;
+        const std::uint64_t pixels = view.samples_drawn();
         const std::uint64_t bounds = params_.early_reject == EarlyReject::none   ? 0
                                      : params_.early_reject == EarlyReject::tile ? pixels / 16
                                                                                  : pixels;

@@ -49,7 +49,8 @@ struct ScoreboardParams {
         return std::tuple{
             sim::field<&P::granularity>(
                 "Area one entry stands for: a pixel of a quad, a quad, or a tile of 4, 8 or 16 pixels"),
-            sim::field<&P::entries>("Entries, by hash of the area; 0 = one for every area of the image")
+            sim::field<&P::entries>(
+                "Entries, by hash of the area; 0 = one for every area of the image, of every sample")
                 .unit("entries")
                 .range(0, 1 << 26),
             sim::field<&P::side_buffer>("Quads that can wait for their area (B)").unit("quads").range(0, 65536),
@@ -74,7 +75,7 @@ std::uint32_t side_of(Granularity granularity) {
 
 std::uint32_t areas(Granularity granularity, const View& view) {
     const std::uint32_t side = side_of(granularity);
-    return ((view.width + side - 1) / side) * ((view.height + side - 1) / side);
+    return ((view.width + side - 1) / side) * ((view.rows() + side - 1) / side);
 }
 
 class ScoreboardTable final : public DispatchGuard {
@@ -87,7 +88,7 @@ class ScoreboardTable final : public DispatchGuard {
           hashed_(params.entries != 0),
           entries_(hashed_ ? params.entries : areas(params.granularity, view)),
           in_flight_(std::size_t{4} * entries_),
-          pixels_(std::size_t{view.width + 1} * (view.height + 1)) {}
+          pixels_(std::size_t{view.width + 1} * (view.rows() + 1)) {}
 
     std::uint32_t keys() const override { return entries_; }
     std::uint32_t key(const Quad& quad) const override {
@@ -163,12 +164,13 @@ class Scoreboard final : public ConfiguredDesign<Scoreboard, ScoreboardParams> {
         return plan;
     }
 
-    // Table: one counter per entry that can hold all quads in flight (pixel masks: 4 bits). Side buffer: position, mask
-    // and a reference to the interpolants of each quad.
+    // Table: one counter per entry that can hold all quads in flight (pixel masks: 4 bits). Side buffer: position,
+    // sample, mask and a reference to the interpolants of each quad.
     nlohmann::ordered_json area(const ModifyProgram&, const View& view, std::uint32_t quads_in_flight) const override {
         const std::uint64_t entries = params_.entries != 0 ? params_.entries : areas(params_.granularity, view);
         const std::uint64_t counter = params_.granularity == Granularity::pixel ? 4 : std::bit_width(quads_in_flight);
-        const std::uint64_t packet = 2 * std::bit_width(std::max(view.width, view.height)) + 4 + 32;
+        const std::uint64_t packet =
+            2 * std::bit_width(std::max(view.width, view.height)) + std::bit_width(view.samples - 1) + 4 + 32;
         return {{"added_state_bits", entries * counter + params_.side_buffer * packet},
                 {"scoreboard_bits", entries * counter},
                 {"side_buffer_bits", params_.side_buffer * packet},

@@ -83,17 +83,11 @@ bool FragmentPipeline::is_captured(float depth, QuadId quad, std::size_t pixel) 
     return pass_->behind == nullptr || is_behind(depth, quad, pixel);
 }
 
-std::uint8_t FragmentPipeline::captured_pixels(const QuadTask& task) const {
+std::uint32_t FragmentPipeline::captured_samples(const QuadTask& task) const {
     if (pass_->behind == nullptr && !pass_->range) return task.mask;
-    const Quad& quad = pass_->stream->quads[task.quad];
-    std::uint8_t mask = 0;
-    for (std::uint32_t pixel = 0; pixel < 4; ++pixel) {
-        if ((task.mask >> pixel & 1) == 0) continue;
-        const std::size_t at = static_cast<std::size_t>(quad.y + pixel / 2) * pass_->layout.width + quad.x + pixel % 2;
-        if (is_captured(pass_->stream->depths[task.quad][pixel], task.quad, at))
-            mask = static_cast<std::uint8_t>(mask | 1U << pixel);
-    }
-    return mask;
+    return kept_samples(task, [this](QuadId id, std::uint32_t pixel) {
+        return is_captured(pass_->stream->depths[id][pixel], id, pass_->place(pass_->stream->quads[id], pixel));
+    });
 }
 
 void FragmentPipeline::start(const QuadTask& task) {
@@ -108,9 +102,8 @@ void FragmentPipeline::start(const QuadTask& task) {
         ++stats_.l1.invalidations;
     }
     draw_ = draw;
-    const std::uint8_t before = task.mask;
-    thread.task.mask = captured_pixels(task);
-    stats_.peel_rejects += static_cast<std::uint64_t>(std::popcount(before) - std::popcount(thread.task.mask));
+    thread.task.mask = captured_samples(task);
+    stats_.peel_rejects += static_cast<std::uint64_t>(std::popcount(task.mask) - std::popcount(thread.task.mask));
     std::uint32_t instructions = pass_->shader_costs[draw].alu;
     if (pass_->screen != nullptr) {
         const Quad& quad = pass_->stream->quads[task.quad];
@@ -124,13 +117,13 @@ void FragmentPipeline::start(const QuadTask& task) {
     thread.alu = alu;
     stats_.issue_cycles += alu;
     ++stats_.quads;
-    stats_.fragments += static_cast<std::uint64_t>(std::popcount(task.mask));
+    stats_.fragments += static_cast<std::uint64_t>(std::popcount(task.pixels()));
     stats_.in_flight_max.note(params_.quads_in_flight - free_threads_.size());
     fetch_textures(index);
 }
 
-// The 64-byte line of the quad's next read-only fetch: first the material's texture, then the peeled layer; ~0 = no
-// more.
+// The 64-byte line of the quad's next read-only fetch: first the material's texture, then the peeled layer, at one
+// sample after the other; ~0 = no more.
 std::uint64_t FragmentPipeline::fetch_line(const Thread& thread) const {
     if (pass_->screen != nullptr) {
         if (thread.fetch == thread.fetches) return ~std::uint64_t{0};
@@ -140,9 +133,9 @@ std::uint64_t FragmentPipeline::fetch_line(const Thread& thread) const {
     const bool textured = pass_->textures && !pass_->stream->texture_lines.empty() &&
                           pass_->stream->texture_lines[thread.task.quad] != ~std::uint32_t{0};
     if (thread.fetch == 0 && textured) return pass_->stream->texture_lines[thread.task.quad];
-    const bool layered = pass_->behind != nullptr;
-    if (layered && thread.fetch <= (textured ? 1 : 0)) {
-        const Quad& quad = pass_->stream->quads[thread.task.quad];
+    const std::uint32_t sample = thread.fetch - (textured ? 1U : 0U);
+    if (pass_->behind != nullptr && sample < pass_->sample_quads(thread.task.quad)) {
+        const Quad& quad = pass_->stream->quads[thread.task.quad + sample];
         return layer_lines + passes_ * lines_of_layer + pass_->layout.tile_of(quad.x, quad.y);
     }
     return ~std::uint64_t{0};

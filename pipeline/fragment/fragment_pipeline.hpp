@@ -6,9 +6,10 @@
 // results leave one per cycle, out of order. A k-buffer value is sampled when its L1 lookup hits, or when the memory
 // side serves it; a hit is available after the hit latency, like any texel. Where the shader has a critical section, it
 // asks the lock table before it reads. A miss on its way when its line is
-// invalidated serves whoever waits for it already, and is not kept. The loop of a full-screen pass fetches without
-// waiting as long as it hits, and runs as long as its longest pixel. Not modelled: individual instructions; branches;
-// fetches of one quad that go to several lines.
+// invalidated serves whoever waits for it already, and is not kept. A group of sample quads is shaded once; a shader
+// that peels reads the layer before at every sample of the group, and masks those out that it does not capture. The loop
+// of a full-screen pass fetches without waiting as long as it hits, and runs as long as its longest pixel.
+// Not modelled: individual instructions; branches; fetches of one quad that go to several lines.
 // Source: specification 004, sections 7, 7.1 (t_disp, t_rd, t_done; read value rule).
 #pragma once
 
@@ -152,7 +153,7 @@ class FragmentPipeline final : public sim::Component {
     bool is_behind(float depth, QuadId quad, std::size_t pixel) const;
     bool is_before(float depth, QuadId quad, std::size_t pixel) const;
     bool is_captured(float depth, QuadId quad, std::size_t pixel) const;
-    std::uint8_t captured_pixels(const QuadTask& task) const;
+    std::uint32_t captured_samples(const QuadTask& task) const;
     std::uint64_t all_targets() const {
         return program_targets_ == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << program_targets_) - 1;
     }

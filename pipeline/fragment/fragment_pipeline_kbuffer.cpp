@@ -87,7 +87,7 @@ bool FragmentPipeline::ask_for_lock() {
         return true;
     }
     if (!locks_out.ready()) return false;
-    locks_out.send({task.quad, task.mask, index, task.order, task.ticket});
+    locks_out.send({task.quad, task.pixels(), index, task.order, task.ticket});
     shading_.pop();
     return true;
 }

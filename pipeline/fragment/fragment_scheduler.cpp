@@ -32,7 +32,7 @@ FragmentScheduler::FragmentScheduler(sim::Context context, std::uint32_t pipes, 
 }
 
 void FragmentScheduler::begin_pass() {
-    pixel_order_.assign(static_cast<std::size_t>(pass_->layout.width + 1) * (pass_->layout.height + 1), 0);
+    pixel_order_.assign(static_cast<std::size_t>(pass_->layout.width + 1) * (pass_->layout.rows() + 1), 0);
     if (plan_->tickets) area_order_.assign(pass_->layout.blocks(), 0);
     batch_ = ~std::uint32_t{0};
 }
@@ -85,13 +85,12 @@ bool FragmentScheduler::can_dispatch(const QuadTask& task) {
     return choose_pipe(pass_->stream->quads[task.quad]);
 }
 
+// The samples of a group have no numbers here: the ROP counts them as they come, in this order.
 void FragmentScheduler::count_order(QuadTask& task) {
+    if (pass_->multisampled) return;
     const Quad& quad = pass_->stream->quads[task.quad];
-    for (std::uint32_t pixel = 0; pixel < 4; ++pixel) {
-        if ((task.mask >> pixel & 1) == 0) continue;
-        const std::size_t at = static_cast<std::size_t>(quad.y + pixel / 2) * pass_->layout.width + quad.x + pixel % 2;
-        task.order[pixel] = pixel_order_[at]++;
-    }
+    for (std::uint32_t pixel = 0; pixel < 4; ++pixel)
+        if ((task.mask >> pixel & 1) != 0) task.order[pixel] = pixel_order_[pass_->place(quad, pixel)]++;
     if (plan_->tickets && touches_kbuffer(task)) {
         const bool tile = *plan_->tickets == LockArea::tile;
         const SurfaceLayout& layout = pass_->layout;
@@ -105,13 +104,13 @@ void FragmentScheduler::dispatch(QuadTask task, bool guarded) {
         task.slot = payloads_->take();
         (*payloads_)[task.slot].dispatched = cycle();
     }
-    if (guarded) plan_->guard->acquire(quad, task.mask);
+    if (guarded) plan_->guard->acquire(quad, task.pixels());
     if (tracked_ && touches_kbuffer(task)) ++in_flight_;
     task.sequence = sequence_++;
     ++stats_.quads;
     if (progress_ != nullptr && stats_.quads % progress_step == 0)
         progress_->fetch_add(progress_step, std::memory_order_relaxed);
-    stats_.fragments += static_cast<std::uint64_t>(std::popcount(task.mask));
+    stats_.fragments += static_cast<std::uint64_t>(std::popcount(task.pixels()));
     order_out.send(task);
     stats_.reorder_places_max.note(order_out.outstanding());
     out_of_slots_ = out_of_places_ = false;
@@ -131,7 +130,7 @@ bool FragmentScheduler::wake_waiting() {
         const auto key = plan_->guard->key(quad);
         if (std::exchange(key_seen_[key], epoch_) == epoch_ && plan_->order_rule)
             continue; // an older quad of this key goes first
-        if (plan_->guard->check(quad, waiting.task.mask) != Conflict::none) continue;
+        if (plan_->guard->check(quad, waiting.task.pixels()) != Conflict::none) continue;
         if (woken == plan_->wakes || !can_dispatch(waiting.task)) {
             rescan_ = true;
             break;
@@ -163,7 +162,7 @@ bool FragmentScheduler::at_batch_boundary(const QuadTask& task) const {
 sim::Cycle FragmentScheduler::cover_cycles(std::uint32_t from_draw, std::uint32_t to_draw) const {
     const std::uint32_t rate = flush_.quad_pixels_per_clk;
     if (rate == 0) return 0;
-    const std::uint64_t pixels = std::uint64_t{pass_->layout.width} * pass_->layout.height;
+    const std::uint64_t pixels = std::uint64_t{pass_->layout.width} * pass_->layout.height * pass_->layout.samples;
     const std::uint32_t quads = flush_.every_draw ? std::max(1U, (to_draw - from_draw) / 2) : 1;
     return quads * ((pixels + rate - 1) / rate);
 }
@@ -226,7 +225,7 @@ sim::Activity FragmentScheduler::accept(bool progress) {
             return progress ? sim::Activity::busy : sim::Activity::memory;
         const Quad& quad = pass_->stream->quads[input->quad];
         const bool guarded = plan_->guard != nullptr && touches_kbuffer(*input);
-        Conflict conflict = guarded ? plan_->guard->check(quad, input->mask) : Conflict::none;
+        Conflict conflict = guarded ? plan_->guard->check(quad, input->pixels()) : Conflict::none;
         const bool ordered = guarded && plan_->order_rule && waiting_per_key_[plan_->guard->key(quad)] != 0;
         if (conflict != Conflict::none || ordered) {
             if (side_buffer_.size() >= plan_->side_buffer) {

@@ -5,6 +5,7 @@
 #include "sim/time.hpp"
 
 #include <array>
+#include <bit>
 #include <cstdint>
 
 namespace pipeline {
@@ -17,23 +18,44 @@ enum class QuadKind : std::uint8_t {
 
 inline constexpr std::uint32_t no_slot = ~std::uint32_t{0};
 
-/// A quad on its way from the rasterizer to its ROP.
+/// The pixels of which a mask of sample quads, four bits each, holds any sample.
+constexpr std::uint8_t pixels_of(std::uint32_t mask) {
+    mask |= mask >> 16U;
+    mask |= mask >> 8U;
+    return static_cast<std::uint8_t>((mask | mask >> 4U) & 15U);
+}
+
+/// A quad on its way from the rasterizer to its ROP; in a multisampled pass a group of sample quads.
 struct QuadTask {
-    QuadId quad = 0;
+    QuadId quad = 0;              ///< the first of its group
     std::uint32_t slot = no_slot; ///< in QuadPayloads, when the shader reads the k-buffer
     std::uint32_t sequence = 0;   ///< place in the reorder buffer's order
-    std::uint8_t mask = 0;        ///< pixels still alive
+    std::uint32_t mask = 0;       ///< what is still alive: bit 4 * n + i is pixel i of sample quad `quad` + n
     QuadKind kind = QuadKind::quad;
     std::uint16_t pipe = 0;
     std::array<std::uint32_t, 4> order{}; ///< per pixel: predecessors at that pixel in raster order
     std::uint32_t ticket = 0;             ///< predecessors in the quad's lock area, where locks are coarser than pixels
     sim::Cycle retired = 0;               ///< core cycle the reorder buffer let it go
+
+    /// Pixels of which any sample is alive.
+    std::uint8_t pixels() const { return pixels_of(mask); }
 };
+
+/// Those samples of a task for which keep(sample quad, pixel) holds.
+template <class Keep>
+std::uint32_t kept_samples(const QuadTask& task, Keep&& keep) {
+    std::uint32_t mask = 0;
+    for (std::uint32_t left = task.mask; left != 0; left &= left - 1) {
+        const auto bit = static_cast<std::uint32_t>(std::countr_zero(left));
+        if (keep(task.quad + bit / 4, bit % 4)) mask |= left & -left;
+    }
+    return mask;
+}
 
 /// A pipe finished the shader of a quad.
 struct Completion {
     std::uint32_t sequence = 0;
-    std::uint8_t mask = 0; ///< pixels that survived the shader
+    std::uint32_t mask = 0; ///< what survived the shader, as in the task
 };
 
 /// A pipe asks for k-buffer lines of one 2x2 block; the values go into the quad's payload slot.

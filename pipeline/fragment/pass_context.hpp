@@ -49,7 +49,15 @@ struct PassContext {
     std::vector<ShaderCost> shader_costs;        ///< by draw
     const ScreenPass* screen = nullptr;          ///< a full-screen pass, whose shader counts for every quad
     bool textures = false;
+    /// A task is a group of sample quads: shaded once, taken apart in the ROP. Else each sample quad is a task.
+    bool multisampled = false;
 
+    /// Sample quads of the task that begins with this one.
+    std::uint32_t sample_quads(QuadId first) const { return multisampled ? stream->quads[first].more + 1U : 1U; }
+    /// Index of a pixel's place in surfaces that lie in row order.
+    std::size_t place(const Quad& quad, std::uint32_t pixel) const {
+        return (quad.y + std::size_t{pixel / 2}) * layout.width + quad.x + pixel % 2;
+    }
     std::uint32_t draw_of(QuadId quad) const { return stream->draw_of(quad); }
 };
 

@@ -33,8 +33,8 @@ bool ReorderBuffer::take_completions() {
     for (sim::In<Completion>& port : completions_in)
         while (port.peek() != nullptr) {
             const Completion completion = port.receive();
-            std::uint8_t& done = done_[completion.sequence & (done_.size() - 1)];
-            done = static_cast<std::uint8_t>((done & here) | complete | completion.mask);
+            std::uint64_t& done = done_[completion.sequence & (done_.size() - 1)];
+            done = (done & here) | complete | completion.mask;
             if ((done & here) != 0) completed_.push(completion.sequence);
             progress = true;
         }
@@ -56,12 +56,12 @@ sim::Activity ReorderBuffer::retire_in_order(bool progress) {
     for (std::uint32_t n = 0; n < params_.retire_per_clk; ++n) {
         const QuadTask* head = order_in.peek();
         if (head == nullptr) break;
-        std::uint8_t& done = done_[head->sequence & (done_.size() - 1)];
+        std::uint64_t& done = done_[head->sequence & (done_.size() - 1)];
         const bool command = head->kind != QuadKind::quad;
         if (!command && (done & complete) == 0) return progress ? sim::Activity::busy : sim::Activity::memory;
         if (!quads_out.ready()) return progress ? sim::Activity::busy : sim::Activity::blocked;
         QuadTask task = order_in.receive();
-        if (!command) task.mask = static_cast<std::uint8_t>(std::exchange(done, 0) & 0xF);
+        if (!command) task.mask = static_cast<std::uint32_t>(std::exchange(done, 0));
         pass_on(task);
         progress = true;
     }
@@ -94,7 +94,7 @@ sim::Activity ReorderBuffer::retire_completed(bool progress) {
         const std::size_t at = completed_.front() & (done_.size() - 1);
         completed_.pop();
         QuadTask task = tasks_[at];
-        task.mask = static_cast<std::uint8_t>(std::exchange(done_[at], 0) & 0xF);
+        task.mask = static_cast<std::uint32_t>(std::exchange(done_[at], 0));
         --held_;
         pass_on(task);
         progress = true;

@@ -57,8 +57,8 @@ class ReorderBuffer final : public sim::Component {
     const ReorderBufferStats& stats() const { return stats_; }
 
   private:
-    static constexpr std::uint8_t complete = 0x80;
-    static constexpr std::uint8_t here = 0x40; ///< out of order: the quad is in tasks_
+    static constexpr std::uint64_t complete = std::uint64_t{1} << 32U;
+    static constexpr std::uint64_t here = std::uint64_t{2} << 32U; ///< out of order: the quad is in tasks_
 
     sim::Activity tick() override;
     bool take_completions();
@@ -71,7 +71,7 @@ class ReorderBuffer final : public sim::Component {
     ReorderBufferParams params_;
     std::uint32_t places_;
     std::vector<std::string> port_names_;
-    std::vector<std::uint8_t> done_;      ///< by sequence modulo size: `complete` | `here` | surviving pixels
+    std::vector<std::uint64_t> done_;     ///< by sequence modulo size: `complete` | `here` | surviving mask
     std::vector<QuadTask> tasks_;         ///< likewise; empty when in order
     FixedQueue<std::uint32_t> completed_; ///< sequences, out of order
     std::uint32_t held_ = 0;              ///< quads in tasks_

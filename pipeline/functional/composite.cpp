@@ -1,6 +1,7 @@
 #include "pipeline/functional/composite.hpp"
 
 #include "pipeline/functional/eye_depth.hpp"
+#include "pipeline/functional/sample_pattern.hpp"
 #include "sim/check.hpp"
 
 #include <algorithm>
@@ -90,16 +91,36 @@ std::vector<float> composite_layers(const Frame& frame, const FinishedSurfaces& 
     return picture;
 }
 
+std::vector<float> picture_of(const Frame& frame, const FinishedSurfaces& surfaces) {
+    return frame.resolve ? frame.resolve->picture(frame, surfaces) : composite_layers(frame, surfaces);
+}
+
+std::vector<float> picture_of_samples(const Frame& frame, const FinishedSurfaces& surfaces) {
+    const View planes = frame.view;
+    std::vector<float> pictures(planes.places() * 4);
+    Frame seen = frame;
+    for (std::uint32_t sample = 0; sample < planes.samples; ++sample) {
+        const auto plane = [&](std::span<const float> surface, std::size_t floats) {
+            return surface.empty() ? surface : plane_of_sample(planes, sample, surface, floats);
+        };
+        seen.view = view_of_sample(planes, sample);
+        const auto picture = picture_of(seen, {plane(surfaces.kbuffer, frame.program->floats_per_pixel()),
+                                               plane(surfaces.colour, 4), plane(surfaces.depth, 1)});
+        std::copy(picture.begin(), picture.end(), plane_of_sample(planes, sample, std::span(pictures), 4).begin());
+    }
+    return mean_of_samples(planes, pictures, 4);
+}
+
 } // namespace
 
 std::vector<float> composite(const Frame& frame, const FinishedSurfaces& surfaces) {
     CHECK(frame.program != nullptr);
-    const std::size_t pixels = frame.view.pixels();
-    CHECK(surfaces.kbuffer.size() == frame.view_of_kbuffer().pixels() * frame.program->floats_per_pixel());
-    CHECK(surfaces.colour.empty() || surfaces.colour.size() == pixels * 4);
-    CHECK(surfaces.depth.empty() || surfaces.depth.size() == pixels);
+    const std::size_t places = frame.view.places();
+    CHECK(surfaces.kbuffer.size() == frame.view_of_kbuffer().places() * frame.program->floats_per_pixel());
+    CHECK(surfaces.colour.empty() || surfaces.colour.size() == places * 4);
+    CHECK(surfaces.depth.empty() || surfaces.depth.size() == places);
     return with_drained(frame, surfaces, [&frame](const FinishedSurfaces& finished) {
-        return frame.resolve ? frame.resolve->picture(frame, finished) : composite_layers(frame, finished);
+        return frame.view.samples == 1 ? picture_of(frame, finished) : picture_of_samples(frame, finished);
     });
 }
 

@@ -14,6 +14,9 @@ namespace pipeline {
 /// Compositing: RGBA floats per pixel (alpha 1): C += T * a * c_i and T *= 1 - a over the entries in stored order with
 /// a = frame.opacity, then C += T * background.
 ///
+/// With several samples to a pixel, each sample's plane becomes a picture of its own, seen through the pixels' samples
+/// instead of their centres; the result is their mean.
+///
 /// The background is the colour surface or, where there is none, frame.background. Entries that
 /// still have the depth they were cleared to are empty. Programs with four floats per entry give the layers' colours;
 /// depth-only programs get a grey ramp instead: 0.9 at the near plane to 0.1 at the far plane, linear in the logarithm

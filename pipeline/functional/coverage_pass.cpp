@@ -3,6 +3,7 @@
 #include "pipeline/functional/lanes.hpp"
 #include "pipeline/functional/parallel.hpp"
 #include "pipeline/functional/raster_triangle.hpp"
+#include "pipeline/functional/sample_walk.hpp"
 #include "sim/check.hpp"
 
 #include <atomic>
@@ -25,6 +26,7 @@ void cut_into_pieces(std::vector<PlannedPiece>& pieces, std::uint32_t of, std::u
 struct CoveredPiece {
     std::vector<Triangle> triangles;
     std::vector<Quad> quads;
+    std::uint64_t groups = 0;
     std::uint64_t fragments = 0;
     std::uint32_t first_triangle = 0; ///< in the stream
     QuadId first_quad = 0;            ///< in the stream
@@ -58,14 +60,29 @@ class Coverage {
     void rasterize_part(std::uint32_t primitive, const PrimitivePart& part) {
         const auto number = static_cast<std::uint32_t>(output_.triangles.size());
         const std::size_t first = output_.quads.size();
-        const RasterTriangle raster = set_up(part.corners[0], part.corners[1], part.corners[2], plan_.viewport);
-        const std::uint32_t tiles = for_each_quad(raster, [&](std::int32_t x, std::int32_t y, unsigned mask) {
-            output_.quads.push_back({static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y), number,
-                                     static_cast<std::uint8_t>(mask), 0, 0});
-            output_.fragments += pixels_in(mask);
-        });
+        const auto add = [&](std::int32_t x, std::int32_t y, std::uint32_t mask) { add_group(number, x, y, mask); };
+        const std::uint32_t samples = plan_.view.samples;
+        const std::uint32_t tiles =
+            samples == 1 ? for_each_quad(set_up(part.corners[0], part.corners[1], part.corners[2], plan_.viewport), add)
+                         : for_each_sampled_quad(part.corners, plan_.viewport, samples, add);
         output_.triangles.push_back({range_.draw, primitive, static_cast<QuadId>(first),
                                      static_cast<std::uint32_t>(output_.quads.size() - first), tiles});
+    }
+
+    // The quads of the samples that are covered; four bits of the mask for each sample.
+    void add_group(std::uint32_t triangle, std::int32_t x, std::int32_t y, std::uint32_t mask) {
+        const std::uint32_t plane = plane_rows(plan_.view.height, plan_.view.samples);
+        ++output_.groups;
+        for (std::uint32_t sample = 0; mask != 0; ++sample, mask >>= 4U) {
+            if ((mask & 15U) == 0) continue;
+            std::uint32_t more = 0;
+            for (std::uint32_t left = mask >> 4U; left != 0; left >>= 4U) more += (left & 15U) != 0 ? 1U : 0U;
+            output_.quads.push_back({static_cast<std::uint16_t>(x),
+                                     static_cast<std::uint16_t>(static_cast<std::uint32_t>(y) + sample * plane),
+                                     triangle, static_cast<std::uint8_t>(mask & 15U), 0,
+                                     static_cast<std::uint8_t>(sample), static_cast<std::uint8_t>(more)});
+            output_.fragments += pixels_in(mask);
+        }
     }
 
     const FrontEndPlan& plan_;
@@ -84,6 +101,7 @@ void place(std::vector<CoveredPiece>& covered, FragmentStream& stream) {
         piece.first_quad = static_cast<QuadId>(quads);
         triangles += piece.triangles.size();
         quads += piece.quads.size();
+        stream.groups += piece.groups;
         stream.fragments += piece.fragments;
         if (triangles > largest_count) throw sim::InputError("scene: expected at most 2^32 - 1 triangles in a pass");
     }

@@ -1,6 +1,7 @@
 #include "pipeline/functional/front_end.hpp"
 
 #include "pipeline/functional/front_end_passes.hpp"
+#include "pipeline/functional/sample_pattern.hpp"
 #include "sim/check.hpp"
 
 #include <algorithm>
@@ -16,6 +17,8 @@ namespace pipeline {
 
 namespace {
 
+constexpr std::uint32_t largest_rows = 65536;
+
 bool finite(const glm::mat4& matrix) {
     for (int column = 0; column < 4; ++column)
         for (int row = 0; row < 4; ++row)
@@ -27,6 +30,14 @@ void check_view(const View& view) {
     if (view.width < 1 || view.width > largest_viewport || view.height < 1 || view.height > largest_viewport)
         throw sim::InputError(fmt::format("view: expected a width and a height of 1 to {} pixels, not {}x{}",
                                           largest_viewport, view.width, view.height));
+    if (!is_sample_count(view.samples))
+        throw sim::InputError(fmt::format("view: expected 1, 4 or 8 samples per pixel, not {}", view.samples));
+    // Rows are numbers of 16 bits, and a surface has no more places than the largest of one sample has pixels.
+    constexpr std::size_t most_places = std::size_t{largest_viewport} * largest_viewport;
+    if (view.rows() > largest_rows || view.places() > most_places)
+        throw sim::InputError(
+            fmt::format("view: {} samples per pixel: expected at most {} rows and {} pixels, not {}x{}", view.samples,
+                        largest_rows / view.samples, most_places / view.samples, view.width, view.height));
     if (!finite(view.view) || !finite(view.projection))
         throw sim::InputError("view: expected matrices of finite numbers");
 }
@@ -156,6 +167,7 @@ FragmentStream rasterize(const Resources& resources, const std::vector<Draw>& dr
     FragmentStream stream;
     stream.width = view.width;
     stream.height = view.height;
+    stream.samples = view.samples;
     FrontEndPlan plan(resources, view, options);
     make_plan(plan, stream, draws, which);
     transform_pass(plan);

@@ -11,6 +11,8 @@ namespace {
 /// Extrapolated weights beyond this are noise.
 constexpr double largest_weight = 1e6;
 
+constexpr double pixels(std::int32_t subpixels) { return static_cast<double>(subpixels) / subpixel_one; }
+
 struct Position {
     double x, y;
 };
@@ -76,8 +78,9 @@ DepthPlane::DepthPlane(const RasterTriangle& raster, const std::array<ScreenVert
     greatest_ = std::max({corners[0].depth, corners[1].depth, corners[2].depth});
 }
 
-Lanes DepthPlane::at(std::int32_t x, std::int32_t y) const {
-    const double here = depth_ + (step_x_ * (x - x_) + step_y_ * (y - y_));
+Lanes DepthPlane::at(std::int32_t x, std::int32_t y, SampleOffset from_centre) const {
+    const double dx = x + pixels(from_centre.x) - x_, dy = y + pixels(from_centre.y) - y_;
+    const double here = depth_ + (step_x_ * dx + step_y_ * dy);
     const std::array<double, 4> depths{here, here + step_x_, here + step_y_, here + (step_x_ + step_y_)};
     Lanes result;
     // Clamped before it is rounded: the plane of a sliver may be out of the range of binary32.
@@ -108,6 +111,19 @@ CornerWeights AttributePlanes::at(std::int32_t x, std::int32_t y, unsigned cover
         const double here = constant_[i] + step_x_[i] * x + step_y_[i] * y;
         shares[i] = {here * scale_[i], (here + step_x_[i]) * scale_[i], (here + step_y_[i]) * scale_[i],
                      (here + (step_x_[i] + step_y_[i])) * scale_[i]};
+    }
+    if (covered != 15U) replace_unusable(shares, covered);
+    return normalized(shares[0], shares[1], shares[2]);
+}
+
+CornerWeights AttributePlanes::at(std::int32_t x, std::int32_t y, unsigned covered,
+                                  const std::array<SampleOffset, 4>& from_centres) const {
+    std::array<Shares, 3> shares;
+    for (std::size_t pixel = 0; pixel < 4; ++pixel) {
+        const double px = x + static_cast<double>(pixel % 2) + pixels(from_centres[pixel].x);
+        const double py = y + static_cast<double>(pixel / 2) + pixels(from_centres[pixel].y);
+        for (std::size_t i = 0; i < 3; ++i)
+            shares[i][pixel] = (constant_[i] + step_x_[i] * px + step_y_[i] * py) * scale_[i];
     }
     if (covered != 15U) replace_unusable(shares, covered);
     return normalized(shares[0], shares[1], shares[2]);

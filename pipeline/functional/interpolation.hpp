@@ -1,5 +1,6 @@
 // What a triangle's depth and attributes are at the four pixel centres of a quad.
 //
+// Pixels of several samples have a depth at each sample and one set of attributes, at a place that the caller chooses.
 // Attributes: the corners' weights are exact edge functions divided by the area in binary64. At covered pixels none is
 // negative, so no attribute leaves the range of the corners (but for rounding), however thin the triangle is.
 // Depth: the plane through the corners as they were before they were snapped to the sub-pixel grid (Mesa does the
@@ -21,8 +22,9 @@ class DepthPlane {
   public:
     DepthPlane(const RasterTriangle& raster, const std::array<ScreenVertex, 3>& corners);
 
-    /// Depth in [0,1] at the quad whose top left pixel is (x, y), also where pixels are not covered.
-    Lanes at(std::int32_t x, std::int32_t y) const;
+    /// Depth in [0,1] at the quad whose top left pixel is (x, y), also where pixels are not covered; at the samples
+    /// that lie there from the centres.
+    Lanes at(std::int32_t x, std::int32_t y, SampleOffset from_centre = {}) const;
 
   private:
     double x_, y_, depth_; ///< of corner 0, pixels from the centre of pixel (0, 0)
@@ -53,6 +55,10 @@ class AttributePlanes {
     /// derivatives; one beyond the eye plane, or near it, takes the weights of the first covered pixel. `covered` is
     /// not 0.
     CornerWeights at(std::int32_t x, std::int32_t y, unsigned covered) const;
+
+    /// The same at one place of each pixel. What lies inside the triangle gets no negative weight there.
+    CornerWeights at(std::int32_t x, std::int32_t y, unsigned covered,
+                     const std::array<SampleOffset, 4>& from_centres) const;
 
   private:
     std::array<double, 3> constant_, step_x_, step_y_; ///< edge functions, for the corners in their given order

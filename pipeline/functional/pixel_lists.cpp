@@ -4,7 +4,7 @@ namespace pipeline {
 
 TileLists::TileLists(const FragmentStream& stream)
     : stream_(stream), tiles_in_row_((stream.width + tile_width - 1) / tile_width) {
-    const std::size_t tiles = std::size_t{tiles_in_row_} * ((stream.height + tile_width - 1) / tile_width);
+    const std::size_t tiles = std::size_t{tiles_in_row_} * ((stream.rows() + tile_width - 1) / tile_width);
     const auto tile_of = [&](const Quad& quad) {
         return std::size_t{quad.y / tile_width} * tiles_in_row_ + quad.x / tile_width;
     };

@@ -48,7 +48,8 @@ std::int64_t signed_area(const ScreenVertex& a, const ScreenVertex& b, const Scr
     return abx * acy - acx * aby;
 }
 
-RasterTriangle set_up(const ScreenVertex& a, const ScreenVertex& b, const ScreenVertex& c, const Viewport& viewport) {
+RasterTriangle set_up(const ScreenVertex& a, const ScreenVertex& b, const ScreenVertex& c, const Viewport& viewport,
+                      SampleOffset from_centre) {
     RasterTriangle triangle;
     triangle.width = static_cast<std::int32_t>(viewport.width());
     triangle.height = static_cast<std::int32_t>(viewport.height());
@@ -56,6 +57,7 @@ RasterTriangle set_up(const ScreenVertex& a, const ScreenVertex& b, const Screen
     triangle.reversed = triangle.area < 0;
     CHECK(triangle.area != 0);
     std::array<Point, 3> corners{{{a.x, a.y}, {b.x, b.y}, {c.x, c.y}}};
+    for (Point& corner : corners) corner = {corner.x - from_centre.x, corner.y - from_centre.y};
     if (triangle.reversed) {
         triangle.area = -triangle.area;
         std::swap(corners[1], corners[2]);

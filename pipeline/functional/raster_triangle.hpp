@@ -6,6 +6,7 @@
 // functions.
 #pragma once
 
+#include "pipeline/functional/sample_pattern.hpp"
 #include "pipeline/functional/vertex_transform.hpp"
 
 #include <algorithm>
@@ -34,7 +35,7 @@ struct RasterTriangle {
 
 // Why 64 bits are enough, and binary64 holds every edge value exactly: coordinates stay within the guard band and half
 // the largest viewport of the origin; a difference takes one bit more, an edge function sums two products of
-// differences, and the walk leaves the bounding box by less than a tile.
+// differences, and the walk leaves the bounding box by less than a tile, samples included.
 inline constexpr std::int64_t largest_coordinate =
     (static_cast<std::int64_t>(guard_band_pixels * 1.001F) + largest_viewport / 2 + 1) * subpixel_one;
 inline constexpr std::int64_t largest_difference = 2 * largest_coordinate + std::int64_t{2} * tile_size * subpixel_one;
@@ -46,8 +47,10 @@ static_assert(largest_edge_function < (std::int64_t{1} << 53));
 /// screen.
 std::int64_t signed_area(const ScreenVertex& a, const ScreenVertex& b, const ScreenVertex& c);
 
-/// Sets a triangle of non-zero area up.
-RasterTriangle set_up(const ScreenVertex& a, const ScreenVertex& b, const ScreenVertex& c, const Viewport& viewport);
+/// Sets a triangle of non-zero area up. Its pixel centres lie at `from_centre` (less than a pixel away), so that a
+/// pixel's sample is rasterized like a centre.
+RasterTriangle set_up(const ScreenVertex& a, const ScreenVertex& b, const ScreenVertex& c, const Viewport& viewport,
+                      SampleOffset from_centre = {});
 
 namespace detail {
 

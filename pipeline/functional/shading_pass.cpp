@@ -1,7 +1,11 @@
 // The last pass of the front end: depth, colour and alpha test of every quad.
 //
 // A piece of work is a run of quads; the triangle they belong to is set up again from its vertices, which is cheaper
-// than keeping the setup of millions of triangles.
+// than keeping the setup of millions of triangles. A group of sample quads belongs to the piece in which it begins.
+//
+// Pixels of several samples are shaded at their centres, or, where the triangle does not cover the centre, at the first
+// sample that it covers (centroid): colours stay within those of the corners. As on real hardware, a quad with such
+// pixels then sees slightly wrong derivatives.
 #include "pipeline/functional/front_end_passes.hpp"
 #include "pipeline/functional/interpolation.hpp"
 #include "pipeline/functional/parallel.hpp"
@@ -48,11 +52,14 @@ class Shading {
     /// Returns how many fragments were discarded.
     std::uint64_t run(std::size_t begin, std::size_t end) {
         std::uint64_t discarded = 0;
-        for (std::size_t i = begin; i < end; ++i) {
-            Quad& quad = stream_.quads[i];
-            if (i == begin || quad.triangle != current_triangle_) enter_triangle(quad.triangle);
-            shade(i, quad);
-            discarded += pixels_in(static_cast<unsigned>(quad.covered ^ quad.alive));
+        while (begin < end && begin != 0 && stream_.quads[begin - 1].more != 0) ++begin;
+        for (std::size_t i = begin; i < end;) {
+            const std::uint32_t triangle = stream_.quads[i].triangle;
+            if (i == begin || triangle != current_triangle_) enter_triangle(triangle);
+            const std::span<Quad> group(stream_.quads.data() + i, stream_.quads[i].more + std::size_t{1});
+            shade(i, group);
+            for (const Quad& quad : group) discarded += pixels_in(static_cast<unsigned>(quad.covered ^ quad.alive));
+            i += group.size();
         }
         return discarded;
     }
@@ -76,30 +83,55 @@ class Shading {
         const auto vertices = (*reader_)(primitive - range_->first_primitive);
         cull_and_clip(plan_.viewport, instance_->culling, plan_.corners(*instance_, vertices), parts_);
         const PrimitivePart& part = parts_.parts[number - stream_.primitives[primitive].first_triangle];
-        const RasterTriangle raster = set_up(part.corners[0], part.corners[1], part.corners[2], plan_.viewport);
-        depth_.emplace(raster, part.corners);
+        raster_ = set_up(part.corners[0], part.corners[1], part.corners[2], plan_.viewport);
+        depth_.emplace(raster_, part.corners);
         if (!shader_->needed()) return;
-        attributes_.emplace(raster, part.corners);
+        attributes_.emplace(raster_, part.corners);
         triangle_ = shader_->triangle(vertices, parts_.clipped ? &part.weights : nullptr);
     }
 
-    void shade(std::size_t i, Quad& quad) {
-        stream_.depths[i] = depth_->at(quad.x, quad.y);
-        quad.alive = quad.covered;
+    void shade(std::size_t first, std::span<Quad> group) {
+        const std::int32_t x = group[0].x;
+        const auto y = static_cast<std::int32_t>(group[0].y - group[0].sample * plane_rows_);
+        unsigned covered = 0;
+        for (std::size_t n = 0; n < group.size(); ++n) {
+            Quad& quad = group[n];
+            stream_.depths[first + n] = depth_->at(x, y, pattern_[quad.sample]);
+            quad.alive = quad.covered;
+            covered |= quad.covered;
+        }
         if (!shader_->needed()) return;
-        const CornerWeights weights = attributes_->at(quad.x, quad.y, quad.covered);
-        const FragmentShader::Output output = shader_->shade(triangle_, weights, quad.covered);
-        quad.alive = output.alive;
-        if (!stream_.colours.empty()) stream_.colours[i] = output.colours;
-        if (!stream_.texture_lines.empty()) stream_.texture_lines[i] = output.texture_line;
+        const CornerWeights weights = pattern_.size() == 1 ? attributes_->at(x, y, covered)
+                                                           : attributes_->at(x, y, covered, centroids(x, y, group));
+        const FragmentShader::Output output = shader_->shade(triangle_, weights, covered);
+        for (std::size_t n = 0; n < group.size(); ++n) {
+            group[n].alive &= output.alive;
+            if (!stream_.colours.empty()) stream_.colours[first + n] = output.colours;
+            if (!stream_.texture_lines.empty()) stream_.texture_lines[first + n] = output.texture_line;
+        }
+    }
+
+    /// Where each pixel is shaded. Of pixels without a covered sample, their centres.
+    std::array<SampleOffset, 4> centroids(std::int32_t x, std::int32_t y, std::span<const Quad> group) const {
+        std::array<SampleOffset, 4> places{};
+        for (std::int32_t pixel = 0; pixel < 4; ++pixel) {
+            if (detail::EdgeValues::at(raster_, x + pixel % 2, y + pixel / 2).covered()) continue;
+            const auto covering = std::find_if(group.begin(), group.end(),
+                                               [pixel](const Quad& quad) { return (quad.covered >> pixel & 1) != 0; });
+            if (covering != group.end()) places[static_cast<std::size_t>(pixel)] = pattern_[covering->sample];
+        }
+        return places;
     }
 
     const FrontEndPlan& plan_;
     FragmentStream& stream_;
+    std::span<const SampleOffset> pattern_ = sample_pattern(plan_.view.samples);
+    std::uint32_t plane_rows_ = plane_rows(plan_.view.height, plan_.view.samples);
     const DrawRange* range_ = nullptr;
     const PlannedInstance* instance_ = nullptr;
     std::optional<FragmentShader> shader_;
     std::optional<PrimitiveReader> reader_;
+    RasterTriangle raster_{};
     std::optional<DepthPlane> depth_;
     std::optional<AttributePlanes> attributes_;
     PrimitiveParts parts_;

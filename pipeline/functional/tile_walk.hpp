@@ -18,6 +18,11 @@ struct EdgeValues {
     EdgeValues plus(const EdgeValues& step) const { return {e0 + step.e0, e1 + step.e1, e2 + step.e2}; }
 };
 
+/// First and last of some tiles; none where first > last.
+struct TileSpan {
+    std::int64_t first = 0, last = -1;
+};
+
 /// One triangle on its way over its tiles.
 template <class Emit>
 class TileWalk {
@@ -42,21 +47,12 @@ class TileWalk {
         return std::max(tiles, 1U);
     }
 
-  private:
-    /// The largest (or smallest) value of edge i over the 8x8 pixels of a tile.
-    std::int64_t extreme(std::size_t i, std::int32_t tile_x, std::int32_t tile_y, bool largest) const {
-        constexpr std::int64_t reach = tile_size - 1;
-        const auto part = [&](std::int64_t step) { return largest == (step > 0) ? reach * step : std::int64_t{0}; };
-        return t_.constant[i] + t_.bias[i] + t_.step_x[i] * (std::int64_t{tile_x} * tile_size) +
-               t_.step_y[i] * (std::int64_t{tile_y} * tile_size) + part(t_.step_x[i]) + part(t_.step_y[i]);
-    }
-
-    std::uint32_t walk_row(std::int32_t left, std::int32_t right, std::int32_t row) {
-        std::int64_t first = 0, last = right - left;
-        for (std::size_t i = 0; i < 3 && first <= last; ++i)
-            narrow_span(extreme(i, left, row, true), t_.step_x[i] * tile_size, first, last);
-        for (std::int64_t tile = first; tile <= last; ++tile) walk_tile(left + static_cast<std::int32_t>(tile), row);
-        return first <= last ? static_cast<std::uint32_t>(last - first + 1) : 0;
+    /// Those tiles of a row, from `left` to `right`, that the coarse test does not reject, counted from `left`.
+    TileSpan span(std::int32_t left, std::int32_t right, std::int32_t row) const {
+        TileSpan tiles{0, right - left};
+        for (std::size_t i = 0; i < 3 && tiles.first <= tiles.last; ++i)
+            narrow_span(extreme(i, left, row, true), t_.step_x[i] * tile_size, tiles.first, tiles.last);
+        return tiles;
     }
 
     void walk_tile(std::int32_t tile_x, std::int32_t tile_y) {
@@ -67,6 +63,21 @@ class TileWalk {
         } else {
             walk_partial(tile_x, tile_y);
         }
+    }
+
+  private:
+    /// The largest (or smallest) value of edge i over the 8x8 pixels of a tile.
+    std::int64_t extreme(std::size_t i, std::int32_t tile_x, std::int32_t tile_y, bool largest) const {
+        constexpr std::int64_t reach = tile_size - 1;
+        const auto part = [&](std::int64_t step) { return largest == (step > 0) ? reach * step : std::int64_t{0}; };
+        return t_.constant[i] + t_.bias[i] + t_.step_x[i] * (std::int64_t{tile_x} * tile_size) +
+               t_.step_y[i] * (std::int64_t{tile_y} * tile_size) + part(t_.step_x[i]) + part(t_.step_y[i]);
+    }
+
+    std::uint32_t walk_row(std::int32_t left, std::int32_t right, std::int32_t row) {
+        const auto [first, last] = span(left, right, row);
+        for (std::int64_t tile = first; tile <= last; ++tile) walk_tile(left + static_cast<std::int32_t>(tile), row);
+        return first <= last ? static_cast<std::uint32_t>(last - first + 1) : 0;
     }
 
     void walk_full(std::int32_t tile_x, std::int32_t tile_y) {

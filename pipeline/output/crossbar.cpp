@@ -4,6 +4,10 @@
 
 namespace pipeline {
 
+namespace {
+constexpr std::uint32_t bytes_of_depth = 4;
+} // namespace
+
 Crossbar::Crossbar(sim::Context context, const CrossbarParams& params, const PassContext& pass,
                    std::uint32_t partitions)
     : Component(std::move(context)), params_(params), pass_(&pass), link_free_(partitions) {
@@ -22,7 +26,7 @@ std::uint32_t Crossbar::bytes_per_fragment() const {
     case FragmentEnd::depth_colour:
         break;
     }
-    return 4 + (pass_->colour_write ? pass_->colour_bytes : 0);
+    return bytes_of_depth + (pass_->colour_write ? pass_->colour_bytes : 0);
 }
 
 bool Crossbar::broadcast(const QuadTask& command) {
@@ -48,7 +52,9 @@ sim::Activity Crossbar::tick() {
             return progress ? sim::Activity::busy : sim::Activity::blocked;
         }
         if (!partitions_out[rop].ready()) return progress ? sim::Activity::busy : sim::Activity::blocked;
-        const auto bytes = static_cast<std::uint32_t>(std::popcount(head->mask)) * bytes_per_fragment();
+        const auto pixels = static_cast<std::uint32_t>(std::popcount(head->pixels()));
+        const auto samples = static_cast<std::uint32_t>(std::popcount(head->mask));
+        const std::uint32_t bytes = pixels * (bytes_per_fragment() - bytes_of_depth) + samples * bytes_of_depth;
         link_free_[rop] = cycle() + (bytes + params_.bytes_per_clk - 1) / params_.bytes_per_clk;
         partitions_out[rop].send(quads_in.receive());
         ++stats_.quads;

@@ -1,7 +1,8 @@
 // The crossbar from the reorder buffer to the ROP partitions: one link per partition, in order, with bounded bandwidth.
 //
-// Modelled: bytes of a fragment's outputs over a link per cycle; head-of-line blocking behind a full partition.
-// Source: specification 004, sections 7, 7.3 (crossbar traffic: FS outputs only, versus 64 B for the shader designs).
+// Modelled: bytes of a fragment's outputs over a link per cycle; head-of-line blocking behind a full partition. What
+// the shader computed for a pixel of several samples is sent once, with a depth for each sample. Source: specification
+// 004, sections 7, 7.3 (crossbar traffic: FS outputs only, versus 64 B for the shader designs).
 #pragma once
 
 #include "pipeline/fragment/messages.hpp"
@@ -50,7 +51,7 @@ class Crossbar final : public sim::Component {
     Crossbar(sim::Context context, const CrossbarParams& params, const PassContext& pass, std::uint32_t partitions);
 
     const CrossbarStats& stats() const { return stats_; }
-    /// Bytes of shader outputs one living fragment of the present pass sends.
+    /// Bytes of shader outputs that a living fragment of one sample sends in the present pass.
     std::uint32_t bytes_per_fragment() const;
 
   private:

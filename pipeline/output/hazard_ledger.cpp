@@ -38,8 +38,8 @@ bool HazardLedger::book(std::uint32_t block, std::uint32_t pixel, std::uint32_t 
     ++distances_[bin];
     if (pairs_.size() < pairs_kept)
         pairs_.push_back({static_cast<std::uint16_t>(layout_.block_x(block) + pixel % 2),
-                          static_cast<std::uint16_t>(layout_.block_y(block) + pixel / 2), kind, quad, aggressor.quad,
-                          missing, read.cycle, aggressor.stored});
+                          static_cast<std::uint16_t>(layout_.pixel_row(layout_.block_y(block)) + pixel / 2), kind, quad,
+                          aggressor.quad, missing, read.cycle, aggressor.stored});
     return true;
 }
 

@@ -20,6 +20,7 @@ class StoreHistory {
 
     struct Store {
         std::uint32_t quad = 0;
+        std::uint32_t number = 0; ///< stores there have been, this one included
         sim::Cycle retired = 0;
         sim::Cycle stored = 0;
         sim::Cycle visible = never; ///< first cycle at which a k-buffer read sees it
@@ -59,7 +60,8 @@ class HazardLedger {
     bool book(std::uint32_t block, std::uint32_t pixel, std::uint32_t quad, const Read& read);
     void enter(std::uint32_t block, std::uint32_t pixel, std::uint32_t quad, sim::Cycle retired, sim::Cycle stored,
                sim::Cycle visible) {
-        history_->store(block, pixel) = {quad, retired, stored, visible};
+        StoreHistory::Store& store = history_->store(block, pixel);
+        store = {quad, store.number + 1, retired, stored, visible};
     }
 
     const HazardCounts& counts() const { return counts_; }

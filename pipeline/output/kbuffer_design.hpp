@@ -164,6 +164,11 @@ struct KBufferPlan {
     /// Stores may happen in another order than that of the primitives; entries may then differ from the reference among
     /// fragments of equal depth, and nowhere else.
     bool order_free = false;
+
+    /// Pixels of several samples are shaded once, and a unit behind the shader does its work at every sample. A shader
+    /// works on pixels: where it updates them, each sample has to be shaded as a pixel of its own (supersampling).
+    /// Specification 004, sections 4.3.1, 6.1 and 7.3.
+    bool works_per_sample() const { return site == UpdateSite::blender || site == UpdateSite::passes; }
 };
 
 /// How the application hands the triangles of k-buffer passes to the GPU for a design.

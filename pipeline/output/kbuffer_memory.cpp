@@ -37,9 +37,9 @@ void KBufferMemory::publish_tile(std::uint32_t tile) {
 }
 
 std::vector<float> KBufferMemory::image() const {
-    std::vector<float> image(static_cast<std::size_t>(layout_.width) * layout_.height * floats_);
+    std::vector<float> image(static_cast<std::size_t>(layout_.width) * layout_.rows() * floats_);
     auto out = image.begin();
-    for (std::uint32_t y = 0; y < layout_.height; ++y)
+    for (std::uint32_t y = 0; y < layout_.rows(); ++y)
         for (std::uint32_t x = 0; x < layout_.width; ++x) {
             const float* pixel = latest_.data() + at(layout_.block_of(x, y), y % 2 * 2 + x % 2);
             out = std::copy(pixel, pixel + floats_, out);

@@ -45,7 +45,7 @@ class KBufferMemory {
 
     /// Sets every pixel to the program's initial value, version 0.
     void clear();
-    /// Content of all pixels, row by row: width * height * floats_per_pixel floats.
+    /// Content of all places, row by row: width * rows * floats_per_pixel floats.
     std::vector<float> image() const;
     /// Per pixel, row by row: fragments stored minus fragments still contained.
     std::uint64_t lost_updates() const;

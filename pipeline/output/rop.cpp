@@ -62,6 +62,25 @@ TileCache& Rop::cache(Use use) {
     return use == Use::depth ? depth_tiles_ : use == Use::colour ? colour_tiles_ : kbuffer_tiles_;
 }
 
+// The sample quad that comes next of a task of which some may be in the queue already.
+QuadTask Rop::next_part(const QuadTask& task) const {
+    if (!pass_->multisampled) return task;
+    const auto living = static_cast<std::uint32_t>(std::countr_zero(task.mask >> 4 * parts_taken_)) / 4;
+    QuadTask part = task;
+    part.quad += parts_taken_ + living;
+    part.mask = task.mask >> 4 * (parts_taken_ + living) & 15U;
+    return part;
+}
+
+// The task leaves the input with its last living part.
+void Rop::part_taken(const QuadTask& part) {
+    const QuadTask& task = *quads_in.peek();
+    parts_taken_ = part.quad - task.quad + 1;
+    if (std::uint64_t{task.mask} >> 4 * parts_taken_ != 0 && pass_->multisampled) return;
+    parts_taken_ = 0;
+    quads_in.pop();
+}
+
 // Moves one quad into the queue: its tiles are looked up, and fetched if need be, before its turn comes.
 bool Rop::admit() {
     const QuadTask* input = quads_in.peek();
@@ -72,7 +91,9 @@ bool Rop::admit() {
         queue_.push({quads_in.receive(), {}});
         return true;
     }
-    const Quad& quad = pass_->stream->quads[input->quad];
+    Queued queued;
+    queued.task = next_part(*input);
+    const Quad& quad = pass_->stream->quads[queued.task.quad];
     const std::uint32_t tile = pass_->layout.tile_of(quad.x, quad.y);
     const bool kbuffer = pass_->end != FragmentEnd::depth_colour;
     draw_ = pass_->draw_of(input->quad);
@@ -83,10 +104,9 @@ bool Rop::admit() {
         if (wanted[static_cast<std::size_t>(use)] && cache(use).find(tile) == no_entry &&
             cache(use).victim() == no_entry)
             return false;
-    Queued queued;
     for (const Use use : {Use::depth, Use::colour, Use::kbuffer})
         if (const auto at = static_cast<std::size_t>(use); wanted[at]) queued.entry[at] = secure_tile(use, tile);
-    queued.task = quads_in.receive();
+    part_taken(queued.task);
     queue_.push(queued);
     stats_.queue_max.note(queue_.size());
     return true;
@@ -118,7 +138,8 @@ bool Rop::execute(sim::Activity& waiting) {
     if (requests_.full() || invalidations_.size() + 8 > invalidations_.capacity()) return false;
     const Quad& quad = pass_->stream->quads[queued.task.quad];
     if (pass_->end == FragmentEnd::kbuffer_blend) {
-        const sim::Cycle at = blender_->may_enter(pass_->layout.block_of(quad.x, quad.y), queued.task.mask, cycle());
+        const sim::Cycle at =
+            blender_->may_enter(pass_->layout.block_of(quad.x, quad.y), queued.task.pixels(), cycle());
         if (at > cycle()) {
             if (!std::exchange(interlocked_, true)) ++stats_.interlock_stalls;
             waiting = sim::Activity::hazard;

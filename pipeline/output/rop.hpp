@@ -7,7 +7,9 @@
 // visibility rule says; units that modify pixels in place (programmable blender, peeling unit, atomic minima); lists of
 // fragments; write-back on replacement, on command and at the end of a pass; clears and copies as streams of memory
 // traffic. Every access to a pixel's state happens in this one component, reads before writes within a cycle.
-// Not modelled: stencil, logic operations, compression, multisampling.
+// A group of sample quads is taken apart as it enters the queue, one sample quad per cycle: from there on each has its
+// own tile, test, program run and bytes.
+// Not modelled: stencil, logic operations, compression, tests and stores of several samples at once.
 // Source: specification 004, sections 2.1, 7 (rop parameters), 7.1 (t_rop, t_vis), 7.3, 7.4, 7.6 and 8.
 #pragma once
 
@@ -99,7 +101,7 @@ class Rop final : public sim::Component {
 
     enum class Use : std::uint8_t { depth, colour, kbuffer };
     struct Queued {
-        QuadTask task;
+        QuadTask task;                                                    ///< of one sample
         std::array<std::uint32_t, 3> entry{no_entry, no_entry, no_entry}; ///< by Use
     };
     struct ReadJob {
@@ -121,6 +123,8 @@ class Rop final : public sim::Component {
     bool accept_reads();
     bool serve_tile_reads();
     bool admit();
+    QuadTask next_part(const QuadTask& task) const;
+    void part_taken(const QuadTask& part);
     std::uint32_t secure_tile(Use use, std::uint32_t tile);
     bool execute(sim::Activity& waiting);
     bool stream_next();
@@ -182,6 +186,7 @@ class Rop final : public sim::Component {
     std::vector<float> pending_values_;
     std::uint32_t draw_ = 0; ///< that memory traffic is booked to
     std::uint32_t next_pipe_ = 0;
+    std::uint32_t parts_taken_ = 0; ///< sample quads of the input's first task that are in the queue
     sim::Cycle unit_free_ = 0;
     bool interlocked_ = false; ///< the head of the queue has been counted as stalled
     bool writing_back_ = false;

@@ -19,7 +19,7 @@ std::uint32_t Rop::run_depth_colour(const Queued& queued) {
     std::uint32_t passed = 0;
     for (std::uint32_t pixel = 0; pixel < 4; ++pixel) {
         if ((queued.task.mask >> pixel & 1) == 0) continue;
-        const std::size_t at = static_cast<std::size_t>(quad.y + pixel / 2) * pass_->layout.width + quad.x + pixel % 2;
+        const std::size_t at = pass_->place(quad, pixel);
         const DepthCode code = depth_code(pass_->depth_format, pass_->stream->depths[queued.task.quad][pixel]);
         if (pass_->farthest) capture_farthest(queued.task.quad, at, code);
         if (pass_->depth.test && !depth_less(code, surfaces_.fixed->depth[at])) {
@@ -115,9 +115,9 @@ std::uint32_t Rop::run_store(const Queued& queued) {
 void Rop::finish(const Queued& queued, bool hazardous) {
     draw_outputs_[pass_->draw_of(queued.task.quad)].hazards += hazardous ? 1 : 0;
     if (commits_out.connected())
-        commits_out.send({queued.task.slot, queued.task.quad, queued.task.mask, QuadKind::quad});
+        commits_out.send({queued.task.slot, queued.task.quad, queued.task.pixels(), QuadKind::quad});
     if (releases_out.connected())
-        releases_out.send({queued.task.slot, queued.task.quad, queued.task.mask, QuadKind::quad});
+        releases_out.send({queued.task.slot, queued.task.quad, queued.task.pixels(), QuadKind::quad});
 }
 
 } // namespace pipeline

@@ -56,7 +56,10 @@ std::uint32_t Rop::run_blend(const Queued& queued) {
         program.make_entry(pass_->stream->fragment(queued.task.quad, pixel), entry.data());
         float* stored = surfaces_.kbuffer->latest(block, pixel);
         PixelVersion& version = surfaces_.kbuffer->latest_version(block, pixel);
-        const std::uint32_t order = plan_->order_free ? version.stores : queued.task.order[pixel];
+        // Samples of a group are numbered here, as their groups come.
+        const std::uint32_t number =
+            pass_->multisampled ? surfaces_.history->store(block, pixel).number : queued.task.order[pixel];
+        const std::uint32_t order = plan_->order_free ? version.stores : number;
         hazardous |= ledger_.book(block, pixel, queued.task.quad, {order, version.stores, version.stores, cycle()});
         ledger_.enter(block, pixel, queued.task.quad, queued.task.retired, cycle(),
                       delayed ? delayed_until : cycle() + 1);
@@ -75,7 +78,7 @@ std::uint32_t Rop::run_blend(const Queued& queued) {
         if (program.insert(pending_values_.data() + value, entry.data())) ++stats_.insertions;
     }
     const std::uint32_t cycles = blender_->cycles_of(work, fragments);
-    const sim::Cycle written = blender_->enter(block, queued.task.mask, cycle(), cycles);
+    const sim::Cycle written = blender_->enter(block, queued.task.pixels(), cycle(), cycles);
     if (plan_->blender.unit == BlendUnit::atomic_min) stats_.atomics += work;
     if (delayed) wake_at(written);
     stats_.program_cycles += cycles;
@@ -101,8 +104,8 @@ void Rop::note_bound(std::uint32_t block, std::uint32_t pixel) {
     const std::uint32_t tile = SurfaceLayout::tile_of_block(block);
     for (std::uint32_t other = tile * 4; other < tile * 4 + 4; ++other)
         for (std::uint32_t corner = 0; corner < 4; ++corner)
-            if (pass_->layout.block_x(other) + corner % 2 < pass_->layout.width &&
-                pass_->layout.block_y(other) + corner / 2 < pass_->layout.height)
+            if (pass_->layout.inside(pass_->layout.block_x(other) + corner % 2,
+                                     pass_->layout.block_y(other) + corner / 2))
                 depth = std::max(depth, last_depth(other, corner));
     if (depth >= std::min(tile_bounds_[tile], cleared_depth_)) return;
     tile_bounds_[tile] = depth;

@@ -1,8 +1,11 @@
 // How a surface is cut into the units that caches, ROPs and memory work on.
 //
 // A tile is 4x4 pixels and belongs to one ROP partition; a block is one aligned 2x2 quad. Blocks are numbered tile by
-// tile so that a tile is contiguous in memory.
+// tile so that a tile is contiguous in memory. With several samples to a pixel the surface holds a plane for each
+// (sample_planes.hpp): a tile is 4x4 pixels of one sample, and all samples of a pixel belong to one partition.
 #pragma once
+
+#include "pipeline/sample_planes.hpp"
 
 #include <cstdint>
 
@@ -11,11 +14,17 @@ namespace pipeline {
 struct SurfaceLayout {
     static constexpr std::uint32_t tile_size = 4; ///< pixels along one side
 
-    std::uint32_t width = 0, height = 0;
+    std::uint32_t width = 0, height = 0; ///< pixels
     std::uint32_t partitions = 1;
+    std::uint32_t samples = 1; ///< of a pixel
+
+    std::uint32_t rows_of_plane() const { return plane_rows(height, samples); }
+    std::uint32_t rows() const { return samples * rows_of_plane(); } ///< of all planes
+    std::uint32_t pixel_row(std::uint32_t row) const { return samples == 1 ? row : row % rows_of_plane(); }
+    bool inside(std::uint32_t x, std::uint32_t row) const { return x < width && pixel_row(row) < height; }
 
     std::uint32_t tiles_x() const { return (width + tile_size - 1) / tile_size; }
-    std::uint32_t tiles_y() const { return (height + tile_size - 1) / tile_size; }
+    std::uint32_t tiles_y() const { return (rows() + tile_size - 1) / tile_size; }
     std::uint32_t tiles() const { return tiles_x() * tiles_y(); }
     std::uint32_t blocks() const { return tiles() * 4; }
 
@@ -33,7 +42,8 @@ struct SurfaceLayout {
     /// Neighbouring tiles lie in different partitions in both directions, if there is more than one.
     std::uint32_t partition_of_tile(std::uint32_t tile) const {
         const std::uint32_t row_step = partitions == 2 ? 1 : 2;
-        return (tile % tiles_x() + row_step * (tile / tiles_x())) % partitions;
+        const std::uint32_t row = pixel_row(tile / tiles_x() * tile_size) / tile_size;
+        return (tile % tiles_x() + row_step * row) % partitions;
     }
     std::uint32_t partition_of(std::uint32_t x, std::uint32_t y) const { return partition_of_tile(tile_of(x, y)); }
 };

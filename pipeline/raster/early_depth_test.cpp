@@ -9,8 +9,8 @@ namespace pipeline {
 
 namespace {
 
-/// Leaves the pixels of `surviving` in the quad; returns how many it takes out.
-std::uint64_t reject(QuadTask& task, std::uint8_t surviving) {
+/// Leaves `surviving` in the task; returns how many fragments it takes out.
+std::uint64_t reject(QuadTask& task, std::uint32_t surviving) {
     return static_cast<std::uint64_t>(std::popcount(std::exchange(task.mask, surviving)) - std::popcount(surviving));
 }
 
@@ -46,29 +46,21 @@ bool EarlyDepthTest::take_bounds() {
     return progress;
 }
 
-std::uint8_t EarlyDepthTest::before_last_entry(const QuadTask& task) const {
+std::uint32_t EarlyDepthTest::before_last_entry(const QuadTask& task) const {
     if (last_entry_.empty() || pass_->end != FragmentEnd::kbuffer_blend) return task.mask;
-    const Quad& quad = pass_->stream->quads[task.quad];
-    const std::size_t first = std::size_t{4} * pass_->layout.block_of(quad.x, quad.y);
-    std::uint8_t mask = task.mask;
-    for (std::uint32_t pixel = 0; pixel < 4; ++pixel)
-        if (pass_->stream->depths[task.quad][pixel] >= last_entry_[first + pixel])
-            mask = static_cast<std::uint8_t>(mask & ~(1U << pixel));
-    return mask;
+    return kept_samples(task, [this](QuadId id, std::uint32_t pixel) {
+        const Quad& quad = pass_->stream->quads[id];
+        const std::size_t first = std::size_t{4} * pass_->layout.block_of(quad.x, quad.y);
+        return pass_->stream->depths[id][pixel] < last_entry_[first + pixel];
+    });
 }
 
-std::uint8_t EarlyDepthTest::before_surface(const QuadTask& task) const {
+std::uint32_t EarlyDepthTest::before_surface(const QuadTask& task) const {
     if (pass_->read_only_depth == nullptr) return task.mask;
-    const Quad& quad = pass_->stream->quads[task.quad];
-    std::uint8_t mask = 0;
-    for (std::uint32_t pixel = 0; pixel < 4; ++pixel) {
-        if ((task.mask >> pixel & 1) == 0) continue;
-        const std::size_t at = static_cast<std::size_t>(quad.y + pixel / 2) * pass_->layout.width + quad.x + pixel % 2;
-        const float depth = pass_->stream->depths[task.quad][pixel];
-        if (depth_less(depth_code(pass_->read_only_format, depth), (*pass_->read_only_depth)[at]))
-            mask = static_cast<std::uint8_t>(mask | 1U << pixel);
-    }
-    return mask;
+    return kept_samples(task, [this](QuadId id, std::uint32_t pixel) {
+        const DepthCode code = depth_code(pass_->read_only_format, pass_->stream->depths[id][pixel]);
+        return depth_less(code, (*pass_->read_only_depth)[pass_->place(pass_->stream->quads[id], pixel)]);
+    });
 }
 
 sim::Activity EarlyDepthTest::tick() {

@@ -3,8 +3,8 @@
 //
 // Built only where the test cannot depend on order: the depth surface is read and not written; the depth of the last
 // entry only falls, so that a bound that is out of date rejects less and never wrongly.
-// Modelled: quads per cycle, pipeline latency (on its output link), latency of the bounds. Not modelled: misses of its
-// caches.
+// Modelled: quads per cycle, all samples of a quad at once; pipeline latency (on its output link), latency of the
+// bounds. Not modelled: misses of its caches.
 // Source: specification 004, sections 6.1 (7), 7.4 and 7.7.
 #pragma once
 
@@ -38,7 +38,8 @@ struct EarlyDepthStats {
     static constexpr auto fields() {
         return std::tuple{
             sim::field<&EarlyDepthStats::quads>("Quads tested").unit("quads"),
-            sim::field<&EarlyDepthStats::fragments>("Fragments tested").unit("fragments"),
+            sim::field<&EarlyDepthStats::fragments>("Fragments tested, each sample of a pixel for itself")
+                .unit("fragments"),
             sim::field<&EarlyDepthStats::fragments_rejected>("Fragments behind the depth surface").unit("fragments"),
             sim::field<&EarlyDepthStats::fragments_beyond>("Fragments that no k-buffer entry could have taken")
                 .unit("fragments"),
@@ -68,8 +69,8 @@ class EarlyDepthTest final : public sim::Component {
   private:
     sim::Activity tick() override;
     bool take_bounds();
-    std::uint8_t before_surface(const QuadTask& task) const;
-    std::uint8_t before_last_entry(const QuadTask& task) const;
+    std::uint32_t before_surface(const QuadTask& task) const;
+    std::uint32_t before_last_entry(const QuadTask& task) const;
 
     EarlyDepthParams params_;
     const PassContext* pass_;

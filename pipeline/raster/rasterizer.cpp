@@ -4,11 +4,11 @@
 
 namespace pipeline {
 
-namespace {
-constexpr std::uint32_t tile_key(const Quad& quad) {
-    return static_cast<std::uint32_t>(quad.y / 8) << 16U | static_cast<std::uint32_t>(quad.x / 8);
+// Of the 8x8 pixels that a quad's triangle is visited for, whatever the sample.
+std::uint32_t Rasterizer::tile_key(QuadId id) const {
+    const Quad& quad = pass_->stream->quads[id];
+    return pass_->layout.pixel_row(quad.y) / 8 << 16U | static_cast<std::uint32_t>(quad.x / 8);
 }
-} // namespace
 
 void Rasterizer::begin(const Triangle& triangle) {
     next_quad_ = triangle.first_quad;
@@ -16,7 +16,7 @@ void Rasterizer::begin(const Triangle& triangle) {
     std::uint32_t occupied = triangle.quads == 0 ? 0 : 1;
     if (triangle.tiles > 1)
         for (QuadId quad = next_quad_ + 1; quad < end_quad_; ++quad)
-            if (tile_key(pass_->stream->quads[quad]) != tile_key(pass_->stream->quads[quad - 1])) ++occupied;
+            if (tile_key(quad) != tile_key(quad - 1)) ++occupied;
     CHECK(triangle.tiles >= occupied);
     empty_tiles_ = triangle.tiles - occupied;
     stats_.tiles += triangle.tiles;
@@ -24,14 +24,21 @@ void Rasterizer::begin(const Triangle& triangle) {
     if (triangle.quads == 0) ++stats_.triangles_without_quads;
 }
 
-void Rasterizer::emit(QuadId id) {
-    const Quad& quad = pass_->stream->quads[id];
+// Sends the task that begins with this quad; returns the first quad behind it.
+QuadId Rasterizer::emit(QuadId first) {
     QuadTask task;
-    task.quad = id;
-    task.mask = quad.alive;
+    task.quad = first;
+    std::uint32_t covered = 0;
+    const std::uint32_t sample_quads = pass_->sample_quads(first);
+    for (std::uint32_t n = 0; n < sample_quads; ++n) {
+        const Quad& quad = pass_->stream->quads[first + n];
+        task.mask |= std::uint32_t{quad.alive} << 4 * n;
+        covered |= quad.covered;
+    }
     quads_out.send(task);
     ++stats_.quads;
-    stats_.fragments += static_cast<std::uint64_t>(std::popcount(quad.covered));
+    stats_.fragments += static_cast<std::uint64_t>(std::popcount(covered));
+    return first + sample_quads;
 }
 
 sim::Activity Rasterizer::tick() {
@@ -50,11 +57,11 @@ sim::Activity Rasterizer::tick() {
             progress = true;
             continue;
         }
-        const std::uint32_t tile = tile_key(pass_->stream->quads[next_quad_]);
-        for (; next_quad_ != end_quad_ && tile_key(pass_->stream->quads[next_quad_]) == tile; --quads) {
+        const std::uint32_t tile = tile_key(next_quad_);
+        for (; next_quad_ != end_quad_ && tile_key(next_quad_) == tile; --quads) {
             if (quads == 0) return sim::Activity::busy;
             if (!quads_out.ready()) return progress ? sim::Activity::busy : sim::Activity::blocked;
-            emit(next_quad_++);
+            next_quad_ = emit(next_quad_);
             progress = true;
         }
     }

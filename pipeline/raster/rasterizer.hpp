@@ -2,8 +2,8 @@
 //
 // Modelled: tiles visited per cycle, empty ones included; quads emitted per cycle, all from the tiles visited in it. A
 // tile with more quads than leave in one cycle holds the next visit up. Coverage, depth and colour were computed before
-// (functional/).
-// Not modelled: hierarchical depth, multisampling.
+// (functional/). In a multisampled pass all samples of a quad leave together, at the rate of one sample.
+// Not modelled: hierarchical depth.
 // Source: specification 004, sections 2.1, 7 (raster_quads_per_clk), 9.3.
 #pragma once
 
@@ -34,12 +34,13 @@ struct RasterizerStats {
     sim::Counter triangles, triangles_without_quads, tiles, quads, fragments;
 
     static constexpr auto fields() {
-        return std::tuple{sim::field<&RasterizerStats::triangles>("Triangles walked").unit("triangles"),
-                          sim::field<&RasterizerStats::triangles_without_quads>("Triangles that cover no pixel centre")
-                              .unit("triangles"),
-                          sim::field<&RasterizerStats::tiles>("8x8 tiles visited").unit("tiles"),
-                          sim::field<&RasterizerStats::quads>("Quads emitted").unit("quads"),
-                          sim::field<&RasterizerStats::fragments>("Covered pixels").unit("fragments")};
+        return std::tuple{
+            sim::field<&RasterizerStats::triangles>("Triangles walked").unit("triangles"),
+            sim::field<&RasterizerStats::triangles_without_quads>("Triangles that cover no pixel centre, and no sample")
+                .unit("triangles"),
+            sim::field<&RasterizerStats::tiles>("8x8 tiles visited").unit("tiles"),
+            sim::field<&RasterizerStats::quads>("Quads emitted").unit("quads"),
+            sim::field<&RasterizerStats::fragments>("Covered pixels").unit("fragments")};
     }
 };
 static_assert(sim::fully_described<RasterizerStats>);
@@ -58,7 +59,8 @@ class Rasterizer final : public sim::Component {
   private:
     sim::Activity tick() override;
     void begin(const Triangle& triangle);
-    void emit(QuadId quad);
+    QuadId emit(QuadId first);
+    std::uint32_t tile_key(QuadId quad) const;
 
     RasterizerParams params_;
     const PassContext* pass_;

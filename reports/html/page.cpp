@@ -4,6 +4,7 @@
 #include "reports/html/sections.hpp"
 #include "reports/numbers.hpp"
 #include "reports/result.hpp"
+#include "reports/run_numbers.hpp"
 #include "ropsim_chart_js.hpp"
 #include "ropsim_page_css.hpp"
 #include "ropsim_page_js.hpp"
@@ -30,13 +31,13 @@ std::string facts(const Comparison& comparison) {
                                   : fmt::format("<p class=\"note\">Not drawn: {}.</p>\n",
                                                 escape_html(fmt::format("{}", fmt::join(scene.notes, "; "))));
     return fmt::format(
-               "<p><b>{}</b> ({} triangles drawn, draws: {}, hash {}) at {} x {} pixels, camera {}. Method: {}. "
+               "<p><b>{}</b> ({} triangles drawn, draws: {}, hash {}) at {} x {} pixels{}, camera {}. Method: {}. "
                "GPU: <b>{}</b>. Seed {}.</p>\n<p class=\"note\">ropsim {} ({}); {} on {} threads, at most {} of "
                "memory.</p>\n",
                escape_html(scene.name), with_commas(scene.triangles_drawn), with_commas(scene.draws),
-               escape_html(scene.hash), comparison.width(), comparison.height(), escape_html(scene.camera), method,
-               escape_html(comparison.gpu.name), comparison.seed, version_text(), escape_html(build_text()),
-               duration_text(comparison.host.seconds), comparison.host.threads,
+               escape_html(scene.hash), comparison.width(), comparison.height(), samples_text(comparison),
+               escape_html(scene.camera), method, escape_html(comparison.gpu.name), comparison.seed, version_text(),
+               escape_html(build_text()), duration_text(comparison.host.seconds), comparison.host.threads,
                bytes_text(static_cast<double>(comparison.host.peak_bytes))) +
            notes;
 }

@@ -35,6 +35,29 @@ TEST(CliResults, JsonIsOneDocumentThatFollowsTheSchema) {
               std::vector<std::string>());
 }
 
+TEST(CliResults, SamplesAreStatedAndCounted) {
+    const json schema = json::parse(file_text(ropsim_test::source_dir() / "reports/result.schema.json"));
+    const json one = json_of(comparison({"--json"})), four = json_of(comparison({"--json", "--samples", "4"}));
+    EXPECT_EQ(ropsim_test::schema_violations(schema, four), std::vector<std::string>());
+    EXPECT_EQ(one["scene"]["samples"], 1);
+    EXPECT_EQ(four["scene"]["samples"], 4);
+    for (std::size_t i = 0; i < one["designs"].size(); ++i) {
+        const json &single = one["designs"][i], &sampled = four["designs"][i];
+        SCOPED_TRACE(single["id"]);
+        EXPECT_GT(sampled["fragments"], 3 * single["fragments"].get<std::uint64_t>());
+        EXPECT_GT(sampled["cycles"], single["cycles"]);
+        EXPECT_LE(sampled["wrong_pixels"], 64 * 64);
+        const auto shaded = [](const json& design) {
+            return design["stages"]["fragment_pipeline"]["counters"]["quads"].get<double>();
+        };
+        const double growth = shaded(sampled) / shaded(single);
+        if (sampled["supports"]["antialiasing"] == "per sample")
+            EXPECT_LT(growth, 1.5); // more only along edges
+        else
+            EXPECT_GT(growth, 3.0);
+    }
+}
+
 TEST(CliResults, EqualForAnyNumberOfThreads) {
     json one = json_of(comparison({"--json", "--threads", "1"}));
     json two = json_of(comparison({"--json", "--threads", "2"}));

@@ -4,6 +4,7 @@
 #include "tests/support/paths.hpp"
 #include "traces/submission.hpp"
 
+#include <bit>
 #include <fmt/format.h>
 
 namespace support {
@@ -13,8 +14,9 @@ Replay::Replay(const std::string& scene, const ReplayOptions& options) : Replay(
 Replay::Replay(const traces::Scene& scene, const ReplayOptions& options) {
     traces::WorkloadOptions knobs;
     for (const std::string& knob : options.knobs) knobs.set(knob);
-    frame = traces::build_frame(scene, traces::make_view(scene, options.camera, options.width, options.height),
-                                options.workload, knobs);
+    pipeline::View view = traces::make_view(scene, options.camera, options.width, options.height);
+    view.samples = options.samples;
+    frame = traces::build_frame(scene, view, options.workload, knobs);
     pipeline::FrontEndOptions front_end;
     front_end.threads = options.threads;
     streams = pipeline::rasterize_frame(frame, front_end);
@@ -57,8 +59,30 @@ const pipeline::FragmentStream& Replay::kbuffer_stream() const {
     return streams.front();
 }
 
+TaskCounts count_tasks(const pipeline::FragmentStream& stream, bool multisampled) {
+    TaskCounts counts;
+    for (std::size_t id = 0; id < stream.quads.size(); ++counts.tasks) {
+        unsigned covered = 0, alive = 0;
+        const std::size_t end = id + (multisampled ? stream.quads[id].more + std::size_t{1} : 1);
+        for (; id < end; ++id) {
+            covered |= stream.quads[id].covered;
+            alive |= stream.quads[id].alive;
+        }
+        counts.covered += static_cast<std::uint64_t>(std::popcount(covered));
+        counts.alive += static_cast<std::uint64_t>(std::popcount(alive));
+    }
+    return counts;
+}
+
+bool multisampled(const Replay& replay, const pipeline::Pass& pass, const std::string& design) {
+    if (replay.frame.view.samples == 1) return false;
+    if (!pass.kbuffer) return true;
+    sim::Config config;
+    return models::make_design(design, config)->plan(*replay.frame.program, replay.frame.view).works_per_sample();
+}
+
 std::vector<std::vector<pipeline::QuadId>> quads_by_pixel(const pipeline::FragmentStream& stream) {
-    std::vector<std::vector<pipeline::QuadId>> lists(std::size_t{stream.width} * stream.height);
+    std::vector<std::vector<pipeline::QuadId>> lists(std::size_t{stream.width} * stream.rows());
     for (pipeline::QuadId id = 0; id < stream.quads.size(); ++id) {
         const pipeline::Quad& quad = stream.quads[id];
         for (std::uint32_t lane = 0; lane < 4; ++lane)

@@ -20,6 +20,7 @@ struct ReplayOptions {
     std::string camera = "auto";
     std::vector<std::string> knobs = {}; ///< of the workload: "k=4", "entry=z"
     unsigned threads = 0;                ///< of the functional front end; 0 = all cores
+    std::uint32_t samples = 1;           ///< of a pixel
 };
 
 class Replay {
@@ -42,7 +43,15 @@ class Replay {
     pipeline::ReferenceImage reference;
 };
 
-/// Per pixel in row order: the quads with a living fragment there, in raster order.
+/// What a pass hands on whose tasks are whole groups of sample quads, if `multisampled`; else sample quads.
+struct TaskCounts {
+    std::uint64_t tasks = 0, covered = 0, alive = 0; ///< pixels of which any sample is covered, or alive
+};
+TaskCounts count_tasks(const pipeline::FragmentStream& stream, bool multisampled);
+/// The pass is multisampled in this design.
+bool multisampled(const Replay& replay, const pipeline::Pass& pass, const std::string& design);
+
+/// Per place in row order: the quads with a living fragment there, in raster order.
 std::vector<std::vector<pipeline::QuadId>> quads_by_pixel(const pipeline::FragmentStream& stream);
 
 /// The ids of all designs.

@@ -55,7 +55,7 @@ class MockBackEnd final : public sim::Component {
         arrivals.push_back({pipe, task, cycle()});
         if (options_.commits && commits_out.connected() && task.mask != 0)
             due_.emplace(cycle() + options_.commit_after,
-                         pipeline::Commit{task.slot, task.quad, task.mask, pipeline::QuadKind::quad});
+                         pipeline::Commit{task.slot, task.quad, task.pixels(), pipeline::QuadKind::quad});
     }
 
     bool take_order() {

@@ -256,6 +256,10 @@ void check(const SoftShadowParams& params, const pipeline::View& view) {
     if (params.layers > params.k)
         throw sim::InputError(
             fmt::format("{}: layers: expected at most k = {}, got {}", place, params.k, params.layers));
+    if (view.samples != 1)
+        throw sim::InputError(
+            fmt::format("--samples: expected 1 with workload soft-shadows, whose kernel runs once for a pixel, got {}",
+                        view.samples));
     if (!pipeline::EyeDepth(view.projection).perspective())
         throw sim::InputError(fmt::format("{}: expected a perspective camera, got a parallel projection", place));
 }

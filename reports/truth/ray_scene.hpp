@@ -88,6 +88,8 @@ class RayScene {
     void fill(Mesh& mesh) const;
     std::array<glm::dvec3, 3> scaled_corners(const Mesh& mesh, std::uint32_t triangle) const;
     void refine(const glm::dvec3& origin, const glm::dvec3& direction, RayHit& hit) const;
+    struct ScaledRay;
+    ScaledRay scaled(const WorldRay& ray) const;
     void drop_doubles(const glm::dvec3& origin, std::vector<RayHit>& hits) const;
     bool one_crossing(const glm::dvec3& origin, const RayHit& a, const RayHit& b) const;
 

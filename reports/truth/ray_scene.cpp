@@ -161,7 +161,7 @@ void RayScene::make_meshes() {
         }
     const double diagonal = glm::length(box.hi - box.lo);
     if (std::isfinite(diagonal)) centre_ = 0.5 * (box.lo + box.hi);
-    if (std::isfinite(diagonal) && diagonal > 0.0) radius_ = 0.5 * diagonal;
+    if (std::isfinite(diagonal) && diagonal > 0.0) radius_ = std::exp2(std::ceil(std::log2(0.5 * diagonal)));
     for (Mesh& mesh : meshes_) fill(mesh);
 }
 

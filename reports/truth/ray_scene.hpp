@@ -96,7 +96,7 @@ class RayScene {
     std::shared_ptr<const pipeline::Resources> resources_;
     std::vector<pipeline::Draw> draws_;
     glm::dvec3 centre_{0.0}; ///< of the bounding box
-    double radius_ = 1.0;    ///< half its diagonal
+    double radius_ = 1.0;    ///< half its diagonal, up to a power of two: scaling is exact
     std::vector<Mesh> meshes_;
     std::unique_ptr<const AlphaMasks> masks_;
     std::unique_ptr<Embree> embree_;

@@ -1,7 +1,8 @@
 /* The C interface of ropsim_rays.so: the one place that links Embree. Triangles are hit from both sides. A ray through
- * an edge that two triangles share meets at least one of them (robust intersection); it may meet both. Every function
- * but `create` and `destroy` may be called by several threads at once. While Embree works, and only then, the calling
- * thread flushes denormal floats to zero. */
+ * an edge that two triangles share meets one of them or both (robust intersection), but for a few in a thousand of those
+ * that go exactly through a corner, which Embree lets slip through. Every function but `create` and `destroy` may be
+ * called by several threads at once. While Embree works, and only then, the calling thread flushes denormal floats to
+ * zero. */
 #pragma once
 
 #include <stddef.h>

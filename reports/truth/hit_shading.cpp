@@ -38,6 +38,7 @@ pipeline::CornerWeights HitShading::weights(const RayHit& hit, std::uint32_t x, 
     pipeline::CornerWeights weights;
     weights.of1.fill(u);
     weights.of2.fill(v);
+    if (!shaders_[hit.mesh].samples()) return weights;
     const auto corners = scene_.corners(hit.mesh, hit.triangle);
     for (std::uint32_t lane = 0; lane < 4; ++lane) {
         if (lane == lane_of(x, y)) continue;

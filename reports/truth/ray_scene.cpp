@@ -63,8 +63,8 @@ float bounded(double value) {
     return static_cast<float>(std::clamp(value, -largest, largest));
 }
 
-RopsimRay scaled_ray(const glm::dvec3& origin, const glm::dvec3& direction, double begin, double end) {
-    const glm::vec3 o(bounded(origin.x), bounded(origin.y), bounded(origin.z)), d(direction);
+RopsimRay module_ray(const glm::dvec3& origin, const glm::dvec3& direction, double begin, double end) {
+    const glm::vec3 o(origin), d(direction);
     return {{o.x, o.y, o.z}, bounded(begin), {d.x, d.y, d.z}, bounded(end)};
 }
 
@@ -83,6 +83,16 @@ struct RayScene::Mesh {
         const float* p = positions.data() + std::size_t{vertex} * 3;
         return {p[0], p[1], p[2]};
     }
+};
+
+/// A ray as the unit ball sees it. One that comes from afar begins just before the ball: neither Embree's range nor its
+/// precision would do for the whole way.
+struct RayScene::ScaledRay {
+    glm::dvec3 origin{0.0}, direction{0.0}; ///< of unit length
+    double stretch = 0.0;                   ///< scaled length of a step
+    double skipped = 0.0, length = -1.0;    ///< before it begins, and from there on; below 0: it meets nothing
+
+    bool passes() const { return length >= 0.0; }
 };
 
 /// The scene on the other side of the C interface.
@@ -151,7 +161,7 @@ void RayScene::make_meshes() {
         }
     const double diagonal = glm::length(box.hi - box.lo);
     if (std::isfinite(diagonal)) centre_ = 0.5 * (box.lo + box.hi);
-    if (std::isfinite(diagonal) && diagonal > 0.0) radius_ = 0.5 * diagonal;
+    if (std::isfinite(diagonal) && diagonal > 0.0) radius_ = std::exp2(std::ceil(std::log2(0.5 * diagonal)));
     for (Mesh& mesh : meshes_) fill(mesh);
 }
 
@@ -213,13 +223,30 @@ std::array<std::uint32_t, 3> RayScene::vertices(std::uint32_t mesh, std::uint32_
     return {first + index[0], first + index[1], first + index[2]};
 }
 
+RayScene::ScaledRay RayScene::scaled(const WorldRay& ray) const {
+    constexpr double near = 4.0, ahead = 2.0; // radii
+    ScaledRay result;
+    result.stretch = glm::length(ray.step) / radius_;
+    result.direction = glm::normalize(ray.step);
+    result.origin = (ray.origin + ray.begin * ray.step - centre_) / radius_;
+    const double length = (ray.end - ray.begin) * result.stretch;
+    if (!(length >= 0.0) || !(result.stretch > 0.0) || !std::isfinite(result.stretch)) return result;
+    if (!(glm::length(result.origin) <= near)) {
+        const double closest = -glm::dot(result.origin, result.direction);
+        if (!(glm::length(result.origin + closest * result.direction) < ahead)) return result;
+        result.skipped = std::max(0.0, closest - ahead);
+        result.origin += result.skipped * result.direction;
+    }
+    result.length = length - result.skipped;
+    return result;
+}
+
 void RayScene::hits(const WorldRay& ray, std::vector<RayHit>& hits) const {
     thread_local std::vector<RopsimRayHit> found;
     hits.clear();
-    const double stretch = glm::length(ray.step) / radius_;
-    const glm::dvec3 direction = glm::normalize(ray.step);
-    const glm::dvec3 origin = (ray.origin + ray.begin * ray.step - centre_) / radius_;
-    embree_->hits(scaled_ray(origin, direction, 0.0, (ray.end - ray.begin) * stretch), found);
+    const ScaledRay here = scaled(ray);
+    if (!here.passes()) return;
+    embree_->hits(module_ray(here.origin, here.direction, 0.0, here.length), found);
     for (const RopsimRayHit& one : found) {
         RayHit hit;
         hit.t = static_cast<double>(one.distance);
@@ -228,13 +255,13 @@ void RayScene::hits(const WorldRay& ray, std::vector<RayHit>& hits) const {
         hit.triangle = one.triangle;
         hit.u = static_cast<double>(one.u);
         hit.v = static_cast<double>(one.v);
-        refine(origin, direction, hit);
+        refine(here.origin, here.direction, hit);
         hits.push_back(hit);
     }
     const auto place = [](const RayHit& hit) { return std::tuple(hit.t, hit.mesh, hit.triangle); };
     std::sort(hits.begin(), hits.end(), [&](const RayHit& a, const RayHit& b) { return place(a) < place(b); });
-    drop_doubles(origin, hits);
-    for (RayHit& hit : hits) hit.t = ray.begin + hit.t / stretch;
+    drop_doubles(here.origin, hits);
+    for (RayHit& hit : hits) hit.t = ray.begin + (here.skipped + hit.t) / here.stretch;
 }
 
 // Embree computes in binary32. Where the triangle is seen so nearly edge-on that the plane says something else
@@ -285,19 +312,22 @@ bool RayScene::one_crossing(const glm::dvec3& origin, const RayHit& a, const Ray
 
 void RayScene::occluded(std::span<const WorldRay> rays, bool coherent, std::span<std::uint8_t> occluded) const {
     CHECK(rays.size() == occluded.size());
-    thread_local std::vector<RopsimRay> scaled;
-    scaled.clear();
+    thread_local std::vector<RopsimRay> passing;
+    thread_local std::vector<std::uint8_t> met;
     const double clear = clearance() / radius_;
-    for (const WorldRay& ray : rays) {
-        const double stretch = glm::length(ray.step) / radius_;
-        const double length = (ray.end - ray.begin) * stretch;
-        const glm::dvec3 origin = (ray.origin + ray.begin * ray.step - centre_) / radius_;
-        if (length > 2.0 * clear)
-            scaled.push_back(scaled_ray(origin, glm::normalize(ray.step), clear, length - clear));
-        else
-            scaled.push_back({{0.0F, 0.0F, 0.0F}, 1.0F, {0.0F, 0.0F, 1.0F}, 0.5F}); // ends before it begins
+    passing.clear();
+    // Until it is known, occluded[i] says that ray i passes the scene.
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        const ScaledRay ray = scaled(rays[i]);
+        const double begin = std::max(0.0, clear - ray.skipped), end = ray.length - clear;
+        occluded[i] = begin < end ? 1 : 0;
+        if (begin < end) passing.push_back(module_ray(ray.origin, ray.direction, begin, end));
     }
-    embree_->occluded(scaled, coherent, occluded);
+    met.resize(passing.size());
+    embree_->occluded(passing, coherent, met);
+    auto next = met.begin();
+    for (std::uint8_t& result : occluded)
+        if (result != 0) result = *next++;
 }
 
 } // namespace reports

@@ -88,13 +88,15 @@ class RayScene {
     void fill(Mesh& mesh) const;
     std::array<glm::dvec3, 3> scaled_corners(const Mesh& mesh, std::uint32_t triangle) const;
     void refine(const glm::dvec3& origin, const glm::dvec3& direction, RayHit& hit) const;
+    struct ScaledRay;
+    ScaledRay scaled(const WorldRay& ray) const;
     void drop_doubles(const glm::dvec3& origin, std::vector<RayHit>& hits) const;
     bool one_crossing(const glm::dvec3& origin, const RayHit& a, const RayHit& b) const;
 
     std::shared_ptr<const pipeline::Resources> resources_;
     std::vector<pipeline::Draw> draws_;
     glm::dvec3 centre_{0.0}; ///< of the bounding box
-    double radius_ = 1.0;    ///< half its diagonal
+    double radius_ = 1.0;    ///< half its diagonal, up to a power of two: scaling is exact
     std::vector<Mesh> meshes_;
     std::unique_ptr<const AlphaMasks> masks_;
     std::unique_ptr<Embree> embree_;

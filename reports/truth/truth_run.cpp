@@ -7,6 +7,7 @@
 #include "traces/workloads.hpp"
 
 #include <chrono>
+#include <cmath>
 
 namespace reports {
 

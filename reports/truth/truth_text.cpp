@@ -3,7 +3,6 @@
 #include "reports/result.hpp"
 #include "reports/text_table.hpp"
 #include "reports/truth/truth_run.hpp"
-#include "ropsim_build.hpp"
 #include "sim/described_json.hpp"
 
 #include <cmath>

@@ -1,4 +1,6 @@
 // `ropsim truth`: what it prints and writes, and the cache that makes a second run instant.
+#include "reports/truth/ray_scene.hpp"
+#include "sim/check.hpp"
 #include "tests/support/program_run.hpp"
 
 #include <algorithm>
@@ -16,6 +18,13 @@ using ropsim_test::TemporaryFolder;
 /// Runs of the program that share a cache of their own.
 class CliTruth : public ::testing::Test {
   protected:
+    void SetUp() override {
+        try {
+            reports::require_rays();
+        } catch (const sim::InputError& error) {
+            GTEST_SKIP() << error.what();
+        }
+    }
     ProgramOutcome run(const std::vector<std::string>& further, std::vector<std::string> environment = {}) const {
         std::vector<std::string> arguments{"truth", "gen:slabs", "--size", "48x48"};
         arguments.insert(arguments.end(), further.begin(), further.end());

@@ -43,8 +43,8 @@ void expect_truth(const Replay& replay, std::uint64_t pixels, double most_doubtf
     const auto errors = reports::errors_of_reference(truth_of(replay.frame), replay.frame, replay.reference);
     ASSERT_FALSE(errors.empty());
     for (const TruthError& error : errors) {
-        // A few thousand pixels are needed before a thousandth of them is more than one or two.
-        EXPECT_TRUE(error.compared < 2000 || error.holds()) << text_of(error);
+        // Of few pixels a thousandth is less than what one silhouette brings.
+        EXPECT_TRUE(error.holds() || error.wrong <= 8) << text_of(error);
         EXPECT_LE(static_cast<double>(error.doubtful), 20.0 + most_doubtful * static_cast<double>(error.compared))
             << text_of(error);
         testing::Test::RecordProperty(error.what, text_of(error));
@@ -130,7 +130,7 @@ TEST_F(TruthTest, LengthsInsideParallelSlabsAreThoseOfTheirRays) {
             if (std::fabs(a.leave - a.enter) < 0.01 || std::fabs(b.leave - b.enter) < 0.01) continue;
             const std::size_t pixel = std::size_t{y} * 96 + x;
             const double known = length(a) + length(b);
-            EXPECT_NEAR(static_cast<double>(truth.inside[pixel]), known, 1e-5 * known) << x << ' ' << y;
+            EXPECT_NEAR(static_cast<double>(truth.inside[pixel]), known, 1e-4 * known) << x << ' ' << y;
             EXPECT_NEAR(static_cast<double>(truth.colours[4 * pixel]), std::exp(-2.0 * length(a) - 0.25 * length(b)),
                         1e-5);
             compared += known > 0.0;

@@ -345,6 +345,7 @@ void Machine::screen(const ScreenPass& pass) {
     context.blend = BlendMode::replace;
     context.colour_write = true; // its values are the workload's
     context.colour_bytes = pass.written_bytes;
+    context.multisampled = false;
     context.screen = &pass;
     begin(pass.name);
     run_draw(stream, {});

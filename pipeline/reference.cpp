@@ -169,13 +169,13 @@ class Reference {
   private:
     void allocate() {
         const auto any = [&](auto member) { return std::any_of(frame_.passes.begin(), frame_.passes.end(), member); };
-        image_.depth_complexity.resize(frame_.view_of_kbuffer().pixels());
+        image_.depth_complexity.resize(frame_.view_of_kbuffer().places());
         if (any([](const Pass& pass) { return pass.depth.test || pass.depth.write; }))
-            surfaces_.depth.resize(frame_.view.pixels());
-        if (any([](const Pass& pass) { return pass.colour; })) surfaces_.colour.resize(frame_.view.pixels() * 4);
+            surfaces_.depth.resize(frame_.view.places());
+        if (any([](const Pass& pass) { return pass.colour; })) surfaces_.colour.resize(frame_.view.places() * 4);
         if (any([](const Pass& pass) { return pass.kbuffer; })) {
             CHECK(frame_.program != nullptr);
-            surfaces_.kbuffer.resize(frame_.view_of_kbuffer().pixels() * frame_.program->floats_per_pixel());
+            surfaces_.kbuffer.resize(frame_.view_of_kbuffer().places() * frame_.program->floats_per_pixel());
         }
         for (const char* surface : {"depth", "colour", "kbuffer"}) clear(surface);
     }

@@ -200,8 +200,8 @@ pipeline::PeeledLayer layer_at(float depth, DepthFormat format, pipeline::QuadId
             std::vector<std::uint32_t>(std::size_t{64} * 64, quad)};
 }
 
-std::vector<std::uint8_t> masks(const PipeBench& bench) {
-    std::vector<std::uint8_t> masks;
+std::vector<std::uint32_t> masks(const PipeBench& bench) {
+    std::vector<std::uint32_t> masks;
     for (const pipeline::Completion& completion : bench.sink.values()) masks.push_back(completion.mask);
     return masks;
 }
@@ -220,7 +220,7 @@ TEST(FragmentPipeline, ExactPeelTakesWhatIsBehindTheLayerAndTiesByOrder) {
     pass.stream.depths[4] = {0.4F, 0.6F, 0.5F, 0.1F};
     PipeBench bench(pass);
     bench.run();
-    EXPECT_EQ(masks(bench), (std::vector<std::uint8_t>{0, 0, 15, 15, 0b0110}));
+    EXPECT_EQ(masks(bench), (std::vector<std::uint32_t>{0, 0, 15, 15, 0b0110}));
     EXPECT_EQ(bench.pipe.stats().peel_rejects, 4U + 4 + 2);
     EXPECT_EQ(bench.pipe.stats().fragments, 20U);
 }
@@ -234,7 +234,7 @@ TEST(FragmentPipeline, EpsPeelTakesWhatIsFartherByEps) {
     for (const float depth : {0.5F, std::nextafter(0.625F, 0.0F), 0.625F}) pass.quad(0, 0, 15, depth);
     PipeBench bench(pass);
     bench.run();
-    EXPECT_EQ(masks(bench), (std::vector<std::uint8_t>{0, 0, 15}));
+    EXPECT_EQ(masks(bench), (std::vector<std::uint32_t>{0, 0, 15}));
 }
 
 TEST(FragmentPipeline, PeeledLayerIsReadThroughTheTextureCache) {

@@ -7,21 +7,15 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <set>
-#include <system_error>
 
 namespace models {
 
 namespace fs = std::filesystem;
 
 std::vector<std::string> gpu_names() {
-    std::set<std::string> names;
-    for (const fs::path& directory : ropsim_build::data_dirs()) {
-        std::error_code missing;
-        for (const fs::directory_entry& entry : fs::directory_iterator(directory / "models/gpus", missing))
-            if (entry.path().extension() == ".toml") names.insert(entry.path().stem().string());
-    }
-    return {names.begin(), names.end()};
+    std::vector<std::string> names = ropsim_build::data_files("models/gpus", ".toml");
+    for (std::string& name : names) name = fs::path(name).stem().string();
+    return names;
 }
 
 namespace {

@@ -3,6 +3,7 @@
 #include "models/gpu_library.hpp"
 #include "models/kbuffers/design_support.hpp"
 #include "models/kbuffers/library.hpp"
+#include "models/programs/language/user_program.hpp"
 #include "models/programs/library.hpp"
 #include "pipeline/gpu_params.hpp"
 #include "reports/counter_reference.hpp"
@@ -74,22 +75,31 @@ std::vector<CatalogueEntry> designs() {
     return entries;
 }
 
-// Cost and size grow with k; they are told for the usual one.
-std::string program_numbers(const models::Program& program, const std::string& entry) {
-    const std::uint32_t k = std::min(program.most_k, 4U);
-    const auto made = models::make_program(program.id, entry, k);
-    return fmt::format("{}, k = {}: {} operations per fragment, {} bytes per pixel, {}{}", entry, k,
-                       made->cost().operations, made->bytes_per_pixel(),
-                       made->order_need() == pipeline::OrderNeed::any ? "any order" : "primitive order",
-                       made->needs_texture() ? ", fetches a table" : "");
+std::string program_numbers(const pipeline::ModifyProgram& program) {
+    return fmt::format("k = {}: {} operations per fragment, {} bytes per pixel, {}{}", program.k(),
+                       program.cost().operations, program.bytes_per_pixel(),
+                       program.order_need() == pipeline::OrderNeed::any ? "any order" : "primitive order",
+                       program.needs_texture() ? ", fetches a table" : "");
 }
 
+// Cost and size grow with k; they are told for the usual one.
 std::vector<CatalogueEntry> programs() {
     std::vector<CatalogueEntry> entries;
     for (const models::Program& program : models::programs()) {
         std::string summary = program.summary;
-        for (const std::string& entry : program.entries) summary += "; " + program_numbers(program, entry);
+        for (const std::string& entry : program.entries)
+            summary +=
+                fmt::format("; {}, {}", entry,
+                            program_numbers(*models::make_program(program.id, entry, std::min(program.most_k, 4U))));
         entries.push_back({"programs", program.id, std::move(summary), {}});
+    }
+    for (const std::string& file : models::shipped_user_programs()) {
+        const auto program = models::load_user_program(file, 0).program;
+        entries.push_back({"programs",
+                           file,
+                           fmt::format("{}; {}", program->summary(), program_numbers(*program)),
+                           {},
+                           fmt::format("program \"{}\" in the k-buffer language", program->id())});
     }
     return entries;
 }

@@ -1,5 +1,6 @@
 #include "traces/scene.hpp"
 
+#include "pipeline/functional/vertex_fetch.hpp"
 #include "sim/check.hpp"
 #include "traces/generators.hpp"
 #include "traces/gltf_import.hpp"
@@ -7,6 +8,7 @@
 #include "traces/scene_bounds.hpp"
 #include "traces/tetrahedra_import.hpp"
 
+#include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
 
@@ -22,11 +24,32 @@ void check_draws(const Scene& scene) {
     }
 }
 
+bool is_finite(const glm::vec4& value) {
+    return std::isfinite(value.x) && std::isfinite(value.y) && std::isfinite(value.z) && std::isfinite(value.w);
+}
+
+// What is no number here would become the colour of fragments. Readers check materials; textures hold whole numbers,
+// and texture coordinates are bounded where they are used.
+void check_colours(const Scene& scene) {
+    for (const pipeline::Geometry& geometry : scene.resources->geometries) {
+        const pipeline::VertexAttribute* const colours = geometry.find(pipeline::Semantic::colour);
+        if (colours == nullptr ||
+            (colours->type != pipeline::ComponentType::f32 && colours->type != pipeline::ComponentType::f16))
+            continue;
+        const pipeline::AttributeReader read(*scene.resources, *colours);
+        for (std::uint32_t i = 0; i < geometry.vertex_count; ++i)
+            if (!is_finite(read(i)))
+                throw sim::InputError(
+                    fmt::format("{}: {}: colour {}: expected finite numbers", scene.name, geometry.name, i));
+    }
+}
+
 } // namespace
 
 void finish_scene(Scene& scene) {
     check_draws(scene);
     scene.resources->validate(scene.name);
+    check_colours(scene);
     scene.resources->place();
     scene.triangles_drawn = 0;
     scene.vertices = 0;

@@ -2,7 +2,7 @@
 // modifies and writes the pixel in the ROP's tile cache.
 //
 // Source: specification 004, section 7.3; Bavoil 2007, section 4.3.1.
-#include "models/kbuffers/configured_design.hpp"
+#include "models/kbuffers/blender_interlock.hpp"
 
 namespace models {
 
@@ -18,13 +18,9 @@ struct BlenderParams {
 
     static constexpr auto fields() {
         using P = BlenderParams;
-        return std::tuple{
-            sim::field<&P::interlock>("What happens to a quad whose pixel is inside the blender"),
-            sim::field<&P::lanes>("Scalar operations per cycle of one ROP's blender").unit("operations").range(1, 1024),
-            sim::field<&P::port_bytes>("Bytes per cycle between one ROP's blender and the tile cache")
-                .unit("bytes")
-                .range(1, 4096),
-            sim::field<&P::latency>("From read to write (L_b)").unit("cycles").range(1, 1000)};
+        return std::tuple_cat(
+            std::tuple{sim::field<&P::interlock>("What happens to a quad whose pixel is inside the blender")},
+            blender_fields<P>());
     }
 };
 static_assert(sim::fully_described<BlenderParams>);
@@ -37,9 +33,7 @@ class Blender final : public ConfiguredDesign<Blender, BlenderParams> {
 
     using ConfiguredDesign::ConfiguredDesign;
 
-    std::string refuses(const ModifyProgram& program) const override {
-        return program.needs_texture() ? "it fetches a table, which a blender cannot" : "";
-    }
+    std::string refuses(const ModifyProgram& program) const override { return blender_refuses(program); }
     KBufferPlan plan(const ModifyProgram&, const View&) const override {
         KBufferPlan plan;
         plan.site = UpdateSite::blender;

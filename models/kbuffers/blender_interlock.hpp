@@ -10,6 +10,18 @@
 
 namespace models {
 
+/// Of parameters with lanes, port_bytes and latency.
+template <class Params>
+constexpr auto blender_fields() {
+    return std::tuple{sim::field<&Params::lanes>("Scalar operations per cycle of one ROP's blender")
+                          .unit("operations")
+                          .range(1, 1024),
+                      sim::field<&Params::port_bytes>("Bytes per cycle between one ROP's blender and the tile cache")
+                          .unit("bytes")
+                          .range(1, 4096),
+                      sim::field<&Params::latency>("From read to write (L_b)").unit("cycles").range(1, 1000)};
+}
+
 template <class Params>
 pipeline::KBufferPlan blender_with(pipeline::InterlockTest test, const Params& params) {
     pipeline::KBufferPlan plan;

@@ -17,15 +17,11 @@ struct CamParams {
 
     static constexpr auto fields() {
         using P = CamParams;
-        return std::tuple{
-            sim::field<&P::entries>("Quads that the associative memory of a partition holds")
-                .unit("quads")
-                .range(1, 4096),
-            sim::field<&P::lanes>("Scalar operations per cycle of one ROP's blender").unit("operations").range(1, 1024),
-            sim::field<&P::port_bytes>("Bytes per cycle between one ROP's blender and the tile cache")
-                .unit("bytes")
-                .range(1, 4096),
-            sim::field<&P::latency>("From read to write (L_b)").unit("cycles").range(1, 1000)};
+        return std::tuple_cat(
+            std::tuple{sim::field<&P::entries>("Quads that the associative memory of a partition holds")
+                           .unit("quads")
+                           .range(1, 4096)},
+            blender_fields<P>());
     }
 };
 static_assert(sim::fully_described<CamParams>);

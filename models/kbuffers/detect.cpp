@@ -4,7 +4,7 @@
 // Numbers that wrap around overlook a hazard now and then; the counters say how often. Source: specification 004,
 // section 8; after Zhang, "Memory-hazard-aware k-buffer algorithm" (TVCG 2014), who puts error-detecting codes into the
 // entries.
-#include "models/kbuffers/configured_design.hpp"
+#include "models/kbuffers/unprotected.hpp"
 
 namespace models {
 
@@ -19,10 +19,9 @@ struct DetectParams {
 
     static constexpr auto fields() {
         using P = DetectParams;
-        return std::tuple{
-            sim::field<&P::version_bits>("Bits of the version number of a pixel").unit("bits").range(1, 31),
-            sim::field<&P::visibility>("When a store becomes visible to a texture read"),
-            sim::field<&P::tex_coherence>("What drops stale k-buffer lines from the texture caches")};
+        return std::tuple_cat(
+            std::tuple{sim::field<&P::version_bits>("Bits of the version number of a pixel").unit("bits").range(1, 31)},
+            visibility_fields<P>());
     }
 };
 static_assert(sim::fully_described<DetectParams>);
@@ -35,10 +34,7 @@ class Detect final : public ConfiguredDesign<Detect, DetectParams> {
     using ConfiguredDesign::ConfiguredDesign;
 
     KBufferPlan plan(const ModifyProgram&, const View&) const override {
-        KBufferPlan plan;
-        plan.site = UpdateSite::fragment_shader;
-        plan.shader.visibility = params_.visibility;
-        plan.shader.coherence = params_.tex_coherence;
+        KBufferPlan plan = unprotected(params_);
         plan.shader.version_bits = params_.version_bits;
         return plan;
     }

@@ -2,7 +2,7 @@
 // through the reorder buffer; nothing protects the interval in between.
 //
 // Source: specification 004, section 7.1; Bavoil 2007, sections 4.3.1 and 4.3.2.
-#include "models/kbuffers/configured_design.hpp"
+#include "models/kbuffers/unprotected.hpp"
 
 namespace models {
 
@@ -23,17 +23,14 @@ struct ExistingParams {
 
     static constexpr auto fields() {
         using P = ExistingParams;
-        return std::tuple{
-            sim::field<&P::visibility>("When a store becomes visible to a texture read"),
-            sim::field<&P::tex_coherence>("What drops stale k-buffer lines from the texture caches"),
-            sim::field<&P::bypass_l1>("k-buffer reads do not look into the texture caches"),
-            sim::field<&P::atomic_reads>(
-                "One read returns all render targets of a pixel at one instant (no torn reads, H4)"),
-            sim::field<&P::flush_triangles>("Flush after this many triangles; 0 = never").unit("triangles"),
-            sim::field<&P::flush_draws>("Flush at every draw boundary"),
-            sim::field<&P::drain>("A flush waits until all quads in flight have stored"),
-            sim::field<&P::writeback>("A flush makes all stores observable"),
-            sim::field<&P::invalidate>("A flush drops the k-buffer lines of the texture caches")};
+        return std::tuple_cat(
+            visibility_fields<P>(),
+            std::tuple{sim::field<&P::bypass_l1>("k-buffer reads do not look into the texture caches"),
+                       sim::field<&P::atomic_reads>(
+                           "One read returns all render targets of a pixel at one instant (no torn reads, H4)"),
+                       sim::field<&P::flush_triangles>("Flush after this many triangles; 0 = never").unit("triangles"),
+                       sim::field<&P::flush_draws>("Flush at every draw boundary")},
+            flush_fields<P>());
     }
 };
 static_assert(sim::fully_described<ExistingParams>);
@@ -46,10 +43,7 @@ class Existing final : public ConfiguredDesign<Existing, ExistingParams> {
     using ConfiguredDesign::ConfiguredDesign;
 
     KBufferPlan plan(const ModifyProgram&, const View&) const override {
-        KBufferPlan plan;
-        plan.site = UpdateSite::fragment_shader;
-        plan.shader.visibility = params_.visibility;
-        plan.shader.coherence = params_.tex_coherence;
+        KBufferPlan plan = unprotected(params_);
         plan.shader.bypass_l1 = params_.bypass_l1;
         plan.shader.atomic_reads = params_.atomic_reads;
         plan.shader.flush = {params_.flush_triangles, params_.flush_draws, params_.drain, params_.writeback,

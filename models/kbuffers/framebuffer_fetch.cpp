@@ -4,7 +4,7 @@
 // The whole surface counts as on chip. Not modelled: binning of the triangles, which a tiled GPU needs to visit its
 // tiles one after the other. Source: specification 004, section 8 (framebuffer fetch, pixel local storage, image
 // blocks).
-#include "models/kbuffers/configured_design.hpp"
+#include "models/kbuffers/lock_table.hpp"
 
 #include <fmt/format.h>
 
@@ -22,17 +22,15 @@ struct FramebufferFetchParams {
 
     static constexpr auto fields() {
         using P = FramebufferFetchParams;
-        return std::tuple{sim::field<&P::bytes_per_pixel>(
-                              "Tile memory of a pixel, or of each of its samples; programs that need more are refused")
-                              .unit("bytes")
-                              .range(16, 1024),
-                          sim::field<&P::read_latency>("From a read's arrival at the tile memory to its value")
-                              .unit("cycles")
-                              .range(1, 1000),
-                          sim::field<&P::lock_latency>("Cycles from a pipe to the order unit, and back")
-                              .unit("cycles")
-                              .range(1, 1000),
-                          sim::field<&P::grants_per_clk>("Quads let through per cycle").unit("quads").range(1, 64)};
+        return std::tuple_cat(
+            std::tuple{sim::field<&P::bytes_per_pixel>(
+                           "Tile memory of a pixel, or of each of its samples; programs that need more are refused")
+                           .unit("bytes")
+                           .range(16, 1024),
+                       sim::field<&P::read_latency>("From a read's arrival at the tile memory to its value")
+                           .unit("cycles")
+                           .range(1, 1000)},
+            lock_table_fields<P>());
     }
 };
 static_assert(sim::fully_described<FramebufferFetchParams>);
@@ -50,18 +48,10 @@ class FramebufferFetch final : public ConfiguredDesign<FramebufferFetch, Framebu
                            program.bytes_per_pixel(), params_.bytes_per_pixel);
     }
     KBufferPlan plan(const ModifyProgram&, const View&) const override {
-        KBufferPlan plan;
-        plan.site = UpdateSite::fragment_shader;
-        plan.shader.visibility = Visibility::rop_cache;
-        plan.shader.coherence = TextureCoherence::none;
-        plan.shader.bypass_l1 = true;
+        KBufferPlan plan = in_critical_section(CriticalSection::ordered, LockArea::pixel, params_);
         plan.shader.atomic_reads = true;
         plan.shader.tile_memory = true;
         plan.shader.read_latency = params_.read_latency;
-        plan.shader.critical_section = CriticalSection::ordered;
-        plan.shader.lock_latency = params_.lock_latency;
-        plan.shader.grants_per_clk = params_.grants_per_clk;
-        plan.retirement = Retirement::out_of_order;
         return plan;
     }
     // Of a tiled GPU: memory of one tile of 32x32 pixels, and a place in the order unit for each quad in flight.

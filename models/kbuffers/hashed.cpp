@@ -20,15 +20,10 @@ struct HashedParams {
 
     static constexpr auto fields() {
         using P = HashedParams;
-        return std::tuple{
-            sim::field<&P::counters>("Counters of a partition, by hash of the pixel (B)")
-                .unit("counters")
-                .range(1, 1 << 24),
-            sim::field<&P::lanes>("Scalar operations per cycle of one ROP's blender").unit("operations").range(1, 1024),
-            sim::field<&P::port_bytes>("Bytes per cycle between one ROP's blender and the tile cache")
-                .unit("bytes")
-                .range(1, 4096),
-            sim::field<&P::latency>("From read to write (L_b)").unit("cycles").range(1, 1000)};
+        return std::tuple_cat(std::tuple{sim::field<&P::counters>("Counters of a partition, by hash of the pixel (B)")
+                                             .unit("counters")
+                                             .range(1, 1 << 24)},
+                              blender_fields<P>());
     }
 };
 static_assert(sim::fully_described<HashedParams>);

@@ -1,9 +1,8 @@
 // Fragment shader interlock: the shader marks the part that reads, modifies and stores its pixel, and the GPU lets one
-// quad at a time into it, in the order of the primitives or in any. All code before that part overlaps freely. Stores
-// go straight to memory's side, so a section takes a read and a store, not the way through the reorder buffer.
+// quad at a time into it, in the order of the primitives or in any. All code before that part overlaps freely.
 //
 // Source: specification 004, section 8 (pixel synchronisation 2013, fragment_shader_interlock).
-#include "models/kbuffers/configured_design.hpp"
+#include "models/kbuffers/lock_table.hpp"
 
 namespace models {
 
@@ -19,13 +18,11 @@ struct InterlockParams {
 
     static constexpr auto fields() {
         using P = InterlockParams;
-        return std::tuple{
-            sim::field<&P::ordered>("Quads enter in the order of their primitives; otherwise one at a time in any"),
-            sim::field<&P::area>("What one critical section locks"),
-            sim::field<&P::lock_latency>("Cycles from a pipe to the lock table, and back")
-                .unit("cycles")
-                .range(1, 1000),
-            sim::field<&P::grants_per_clk>("Critical sections entered per cycle").unit("quads").range(1, 64)};
+        return std::tuple_cat(
+            std::tuple{
+                sim::field<&P::ordered>("Quads enter in the order of their primitives; otherwise one at a time in any"),
+                sim::field<&P::area>("What one critical section locks")},
+            lock_table_fields<P>());
     }
 };
 static_assert(sim::fully_described<InterlockParams>);
@@ -43,16 +40,8 @@ class Interlock final : public ConfiguredDesign<Interlock, InterlockParams> {
                    : "";
     }
     KBufferPlan plan(const ModifyProgram&, const View&) const override {
-        KBufferPlan plan;
-        plan.site = UpdateSite::fragment_shader;
-        plan.shader.visibility = Visibility::rop_cache;
-        plan.shader.coherence = TextureCoherence::none;
-        plan.shader.bypass_l1 = true;
-        plan.shader.critical_section = params_.ordered ? CriticalSection::ordered : CriticalSection::unordered;
-        plan.shader.lock_area = params_.area;
-        plan.shader.lock_latency = params_.lock_latency;
-        plan.shader.grants_per_clk = params_.grants_per_clk;
-        plan.retirement = Retirement::out_of_order;
+        KBufferPlan plan = in_critical_section(params_.ordered ? CriticalSection::ordered : CriticalSection::unordered,
+                                               params_.area, params_);
         plan.order_free = !params_.ordered;
         return plan;
     }

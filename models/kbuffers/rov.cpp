@@ -2,7 +2,7 @@
 // shader marks nothing, so the hardware tracks whole 2x2 blocks, from a quad's first access until its store.
 //
 // Source: specification 004, section 8 (Direct3D 11.3 and 12).
-#include "models/kbuffers/configured_design.hpp"
+#include "models/kbuffers/lock_table.hpp"
 
 namespace models {
 
@@ -14,14 +14,7 @@ struct RovParams {
     std::uint32_t lock_latency = 4;
     std::uint32_t grants_per_clk = 6;
 
-    static constexpr auto fields() {
-        using P = RovParams;
-        return std::tuple{
-            sim::field<&P::lock_latency>("Cycles from a pipe to the lock table, and back")
-                .unit("cycles")
-                .range(1, 1000),
-            sim::field<&P::grants_per_clk>("Ordered sections entered per cycle").unit("quads").range(1, 64)};
-    }
+    static constexpr auto fields() { return lock_table_fields<RovParams>(); }
 };
 static_assert(sim::fully_described<RovParams>);
 
@@ -33,17 +26,7 @@ class Rov final : public ConfiguredDesign<Rov, RovParams> {
     using ConfiguredDesign::ConfiguredDesign;
 
     KBufferPlan plan(const ModifyProgram&, const View&) const override {
-        KBufferPlan plan;
-        plan.site = UpdateSite::fragment_shader;
-        plan.shader.visibility = Visibility::rop_cache;
-        plan.shader.coherence = TextureCoherence::none;
-        plan.shader.bypass_l1 = true;
-        plan.shader.critical_section = CriticalSection::ordered;
-        plan.shader.lock_area = LockArea::quad;
-        plan.shader.lock_latency = params_.lock_latency;
-        plan.shader.grants_per_clk = params_.grants_per_clk;
-        plan.retirement = Retirement::out_of_order;
-        return plan;
+        return in_critical_section(CriticalSection::ordered, LockArea::quad, params_);
     }
     // A block number and a ticket for each quad in flight.
     nlohmann::ordered_json area(const ModifyProgram&, const View&, std::uint32_t quads_in_flight) const override {

@@ -14,15 +14,7 @@ struct TileTicketParams {
     std::uint32_t port_bytes = 32;
     std::uint32_t latency = 16;
 
-    static constexpr auto fields() {
-        using P = TileTicketParams;
-        return std::tuple{
-            sim::field<&P::lanes>("Scalar operations per cycle of one ROP's blender").unit("operations").range(1, 1024),
-            sim::field<&P::port_bytes>("Bytes per cycle between one ROP's blender and the tile cache")
-                .unit("bytes")
-                .range(1, 4096),
-            sim::field<&P::latency>("From read to write (L_b)").unit("cycles").range(1, 1000)};
-    }
+    static constexpr auto fields() { return blender_fields<TileTicketParams>(); }
 };
 static_assert(sim::fully_described<TileTicketParams>);
 

@@ -16,15 +16,27 @@ constexpr std::uint32_t picture_size = 512; // specification 004, section 4.8
 // Larger meshes were drawn in calls of so many triangles, below the limit of the driver (specification 004,
 // section 4.5).
 constexpr double triangles_per_call = 1e6;
+constexpr double seed_share = 1e-3; // runs of one stand-in differ by so much from seed to seed
 
-// The size of buffers and index ranges counts by what it is compared with, so that shrinks as the mesh does.
-std::vector<std::string> shrunk_limits(const PublishedPeeling& published, double triangles, double of_triangles) {
-    const pipeline::HostParams host = configured_gpu(published.gpu, {}).host;
-    const double of_mesh = triangles / of_triangles;
-    const double of_call = triangles / std::min(of_triangles, triangles_per_call);
-    return {fmt::format("host.vram_mb={:.9g}", host.vram_mb * of_mesh),
-            fmt::format("host.span_saturation={}", std::lround(std::ceil(host.span_saturation * of_call))),
-            fmt::format("host.range_limit_vertices={}", std::lround(std::ceil(host.range_limit_vertices * of_call)))};
+// The size of buffers and index ranges counts by what it is compared with, so that shrinks as the mesh does. Between
+// two uses of a vertex lies a row of a surface's triangles, which grows with the root of their number, so the cache
+// that the row has to fit into shrinks with that.
+std::vector<std::string> shrunk_limits(const PublishedPeeling& published, const PeelingDataset& dataset,
+                                       double triangles) {
+    const pipeline::GpuParams gpu = configured_gpu(published.gpu, {});
+    const auto whole = static_cast<double>(dataset.triangles);
+    const double of_mesh = triangles / whole, of_call = triangles / std::min(whole, triangles_per_call);
+    std::vector<std::string> limits{
+        fmt::format("host.vram_mb={:.9g}", gpu.host.vram_mb * of_mesh),
+        fmt::format("host.span_saturation={}", std::lround(std::ceil(gpu.host.span_saturation * of_call))),
+        fmt::format("host.range_limit_vertices={}", std::lround(std::ceil(gpu.host.range_limit_vertices * of_call)))};
+    if (dataset.grows == MeshGrowth::surface) {
+        const pipeline::CacheParams& cache = gpu.geometry.vertex_fetch.cache;
+        const std::uint32_t set = cache.line * cache.ways;
+        const long sets = std::max(1L, std::lround(cache.bytes * std::sqrt(of_mesh) / set));
+        limits.push_back(fmt::format("geometry.vertex_fetch.cache.bytes={}", sets * set));
+    }
+    return limits;
 }
 
 ComparisonRequest request_of(const PublishedPeeling& published, const PeelingMeasurement& row, std::uint64_t triangles,
@@ -36,8 +48,7 @@ ComparisonRequest request_of(const PublishedPeeling& published, const PeelingMea
     request.width = request.height = picture_size;
     request.workload_settings = {fmt::format("k={}", row.k), "entry=" + row.entry};
     request.gpu = published.gpu;
-    request.gpu_settings =
-        shrunk_limits(published, static_cast<double>(triangles), static_cast<double>(dataset.triangles));
+    request.gpu_settings = shrunk_limits(published, dataset, static_cast<double>(triangles));
     request.gpu_settings.insert(request.gpu_settings.end(), gpu_settings.begin(), gpu_settings.end());
     for (std::size_t i = 0; i < peeling_columns; ++i)
         request.designs.push_back(design_of(static_cast<PeelingColumn>(i)));
@@ -47,6 +58,21 @@ ComparisonRequest request_of(const PublishedPeeling& published, const PeelingMea
 
 double mean(const std::vector<double>& values) {
     return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+/// Between two neighbouring points. Its slope is taken for that at the geometric middle, the smaller of the two: then
+/// more doublings lie behind it, and no fewer between two secants.
+struct Secant {
+    double middle = 0, slope = 0;
+};
+
+std::vector<Secant> secants_of(const std::vector<double>& x, const std::vector<double>& y) {
+    std::vector<Secant> secants;
+    for (std::size_t i = 0; i + 1 < x.size(); ++i) {
+        CHECK(x[i] > 0 && x[i + 1] > x[i]);
+        secants.push_back({std::sqrt(x[i] * x[i + 1]), (y[i + 1] - y[i]) / (x[i + 1] - x[i])});
+    }
+    return secants;
 }
 
 } // namespace
@@ -67,7 +93,7 @@ StandInRun run_stand_in(const PublishedPeeling& published, const PeelingMeasurem
 }
 
 LineValue line_value(const std::vector<double>& x, const std::vector<double>& y, double at) {
-    CHECK(!x.empty() && x.size() == y.size());
+    CHECK(x.size() == y.size() && (x.size() == 1 || x.size() >= 3));
     if (x.size() == 1) return {y.front(), 0};
     const double mean_x = mean(x), mean_y = mean(y);
     double products = 0, squares = 0;
@@ -76,13 +102,17 @@ LineValue line_value(const std::vector<double>& x, const std::vector<double>& y,
         squares += (x[i] - mean_x) * (x[i] - mean_x);
     }
     CHECK(squares > 0);
-    const double slope = products / squares;
-    LineValue result{mean_y + slope * (at - mean_x), 0};
-    for (std::size_t i = 0; i < x.size(); ++i)
-        result.residual = std::max(result.residual, std::abs(y[i] - mean_y - slope * (x[i] - mean_x)));
-    const auto [least, most] = std::minmax_element(y.begin(), y.end());
-    result.residual /= *most > *least ? *most - *least : 1;
-    return result;
+    const double value = mean_y + products / squares * (at - mean_x);
+    const std::vector<Secant> secants = secants_of(x, y);
+    double change = 0; // of the slope, per doubling of x
+    for (std::size_t i = 0; i + 1 < secants.size(); ++i)
+        change = std::max(change, std::abs(secants[i + 1].slope - secants[i].slope) /
+                                      std::log2(secants[i + 1].middle / secants[i].middle));
+    const Secant& last = secants.back();
+    const double beyond = at - x.back();
+    const double doublings = std::log2((x.back() + at) / 2 / last.middle);
+    const double error = std::abs(value - y.back() - last.slope * beyond) + change * doublings * beyond;
+    return {value, error / value + seed_share};
 }
 
 } // namespace reports

@@ -60,7 +60,7 @@ class RowNumbers {
         number.row.low = printed.low();
         number.row.high = printed.high();
         number.row.model = 1e3 / whole.value;
-        number.uncertainty = whole.residual;
+        number.uncertainty = whole.error;
         if (const PeelingNote* note = find_note(published_.calibrated, measured_, column_name(column))) {
             number.row.status = RowStatus::calibrated;
             number.row.parameter = note->parameter;

@@ -1,4 +1,5 @@
 // Frames and machines at the limits: nothing to draw, odd viewports, everything in one place, one of every unit.
+#include "tests/support/program_run.hpp"
 #include "tests/support/replay.hpp"
 #include "tests/support/screen_scene.hpp"
 
@@ -114,6 +115,42 @@ TEST(Extremes, ManyCoincidentFragmentsOfEqualDepth) {
         expect_good_runs(replay);
     }
     expect_good_runs(Replay(screen_scene(triangles), {16, 16, "opaque"}));
+}
+
+TEST(Extremes, AProgramThatNeverWrites) {
+    const ropsim_test::TemporaryFolder folder;
+    const auto file = folder.path() / "idle.kb";
+    ropsim_test::write_text(file, "program \"idle\"; k 2; entry r, g, b, z; empty z = largest; order any; "
+                                  "picture layers; fragment { f.z = f.z + 1; }");
+    const Replay replay("gen:discs?n=60&overlap=8&width=24&height=24",
+                        {24, 24, "transparency", "auto", {"program=" + file.string(), "k=2"}});
+    EXPECT_EQ(replay.reference.accepted_insertions, 0U);
+    EXPECT_GE(replay.designs().size(), 12U);
+    for (const std::string& design : replay.designs()) {
+        SCOPED_TRACE(design);
+        const RunResult run = replay.run(design);
+        EXPECT_GT(run.fragments, 0U);
+        EXPECT_EQ(run.wrong_pixels, 0U);
+        EXPECT_EQ(run.unexplained_pixels, 0U);
+        EXPECT_TRUE(run.kbuffer == replay.reference.kbuffer);
+    }
+}
+
+TEST(Extremes, OpacityNoneAndFull) {
+    const auto picture = [](const std::string& program, int layers, int opacity) {
+        SCOPED_TRACE(fmt::format("{} with opacity {}", program, opacity));
+        const Replay replay(fmt::format("gen:stack?n={}&x=0&y=0&w=8&h=8&order=front-to-back", layers),
+                            {8, 8, "transparency", "auto", {"program=" + program, fmt::format("opacity={}", opacity)}});
+        expect_good_runs(replay);
+        return replay.reference.picture;
+    };
+    for (const char* program : {"nearest-k", "order-and-blend", "mlab", "order_and_blend.kb"}) {
+        SCOPED_TRACE(program);
+        const auto clear = picture(program, 9, 0), full = picture(program, 9, 1);
+        EXPECT_NE(full, clear);
+        EXPECT_EQ(full, picture(program, 1, 1));                                  // the layer in front
+        for (std::size_t i = 0; i < clear.size(); ++i) EXPECT_EQ(clear[i], 1.0F); // the white behind them
+    }
 }
 
 TEST(Extremes, SixtyFourEntries) {

@@ -27,8 +27,8 @@ const reports::PeelingMeasurement& row_of(const std::string& dataset, std::uint3
 std::map<std::string, double> model_of(const std::string& dataset, std::uint32_t k) {
     const auto& row = row_of(dataset, k);
     const reports::PeelingDataset& data = published().dataset(dataset);
-    // The whole mesh where that is small enough, else a line through two stand-ins.
-    std::vector<std::uint64_t> sizes{data.sizes[0], data.sizes[1]};
+    // The whole mesh where that is small enough, else a line through its stand-ins.
+    std::vector<std::uint64_t> sizes = data.sizes;
     if (data.triangles <= 1'000'000) sizes = {data.triangles};
     std::vector<reports::StandInRun> runs;
     for (const std::uint64_t size : sizes) runs.push_back(reports::run_stand_in(published(), row, size));
@@ -113,12 +113,39 @@ TEST(PeelingTable, PrintedDigitsSayHowFarANumberWasRounded) {
     EXPECT_THROW(reports::printed_number("0"), sim::InputError);
 }
 
-TEST(PeelingTable, LinesGoThroughTheirPointsAndTellHowFarTheyMiss) {
+TEST(PeelingTable, LinesGoThroughTheirPointsAndTellHowFarTheyMayMiss) {
     const auto exact = reports::line_value({1, 2, 4}, {3, 5, 9}, 10);
     EXPECT_NEAR(exact.value, 21, 1e-12);
-    EXPECT_NEAR(exact.residual, 0, 1e-12);
-    EXPECT_NEAR(reports::line_value({0, 1, 2}, {0, 1.5, 2}, 1).residual, 1.0 / 6, 1e-12);
+    EXPECT_NEAR(exact.error, 1e-3, 1e-12);
     EXPECT_EQ(reports::line_value({5}, {7}, 100).value, 7);
+    EXPECT_EQ(reports::line_value({5}, {7}, 100).error, 0);
+    // Costs that bend, up or down, stay within what the line says of itself.
+    using Cost = double (*)(double);
+    for (const Cost cost :
+         {Cost{[](double x) { return 3 + std::pow(x, 0.8); }}, Cost{[](double x) { return 3 + 2 * x - std::sqrt(x); }},
+          Cost{[](double x) { return 1 + x * std::log2(x); }}})
+        for (const double at : {5.0, 15.0, 40.0, 1000.0}) {
+            const auto line = reports::line_value({1, 2, 4}, {cost(1), cost(2), cost(4)}, at);
+            EXPECT_LE(std::abs(line.value - cost(at)), line.error * line.value) << cost(1) << " at " << at;
+            EXPECT_GT(line.error, 0);
+        }
+}
+
+// The only mesh that can be run whole.
+TEST(Peeling, LongTheWholeMeshIsAsFarFromTheLineAsTheLineSays) {
+    const auto& data = published().dataset("Dragon");
+    for (const std::uint32_t k : {4U, 16U}) {
+        std::vector<reports::StandInRun> runs;
+        for (const std::uint64_t size : data.sizes)
+            runs.push_back(reports::run_stand_in(published(), row_of("Dragon", k), size));
+        const auto whole = reports::run_stand_in(published(), row_of("Dragon", k), data.triangles);
+        const auto read = reports::peeling_numbers(published(), row_of("Dragon", k), runs);
+        const auto run = reports::peeling_numbers(published(), row_of("Dragon", k), {whole});
+        for (std::size_t i = 0; i < run.size(); ++i) {
+            EXPECT_LE(std::abs(read[i].row.model / run[i].row.model - 1), read[i].uncertainty) << run[i].row.row;
+            EXPECT_LE(read[i].uncertainty, 0.05) << run[i].row.row;
+        }
+    }
 }
 
 TEST(PeelingTable, RatiosAndBatchTimesFollowFromTheColumnsWithTheirRanges) {

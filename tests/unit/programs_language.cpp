@@ -3,11 +3,14 @@
 #include "models/programs/nearest_k.hpp"
 #include "models/programs/order_and_blend.hpp"
 #include "sim/random.hpp"
+#include "tests/support/paths.hpp"
 
 #include <array>
 #include <cmath>
 #include <fmt/format.h>
+#include <fstream>
 #include <gtest/gtest.h>
+#include <iterator>
 #include <limits>
 #include <vector>
 
@@ -44,6 +47,30 @@ TEST(Language, Arithmetic) {
     EXPECT_EQ(result("s.x = -f.r - -f.g;"), -0.25F);
     EXPECT_EQ(result("s.x = min(f.r, f.g) + max(f.r, f.g) + abs(f.g - f.r);"), 1.0F);
     EXPECT_EQ(result("s.x = select(f.r < f.g, 1.0, select(f.o == 3, 2.0, 3.0));"), 2.0F);
+}
+
+// Sums side by side that share a factor become one instruction, which does them one after the other all the same.
+TEST(Language, SumsOfProductsAreDoneInTheirOrder) {
+    const auto sums = [&](const std::string& body) {
+        const auto program =
+            program_of("program \"t\"; k 4; entry r, g, b, z; state x = 7, y = 2, u = 3; fragment {" + body + "}")
+                .program;
+        std::vector<float> pixel(program->floats_per_pixel());
+        program->clear(pixel.data());
+        const std::array<float, 4> entry{0.5F, 0.25F, 0.75F, 0.125F};
+        program->insert(pixel.data(), entry.data());
+        return std::array{pixel[16], pixel[17], pixel[18]};
+    };
+    using Sums = std::array<float, 3>;
+    const Sums scaled{7.0F + 0.125F * 0.5F, 2.0F + 0.125F * 0.25F, 3.0F + 0.125F * 0.75F};
+    EXPECT_EQ(sums("s.x = s.x + f.z * f.r; s.y = s.y + f.z * f.g; s.u = s.u + f.z * f.b;"), scaled);
+    EXPECT_EQ(sums("s.x = s.x + f.r * f.z; s.y = s.y + f.z * f.g; s.u = s.u + f.b * f.z;"), scaled);
+    // The shared factor is one of the sums.
+    EXPECT_EQ(sums("s.x = s.x + s.y * f.r; s.y = s.y + s.y * f.g; s.u = s.u + s.y * f.b;"),
+              (Sums{8.0F, 2.5F, 3.0F + 2.5F * 0.75F}));
+    // A jump between them.
+    EXPECT_EQ(sums("if f.r < f.g { s.x = s.x + f.z * f.r; } s.y = s.y + f.z * f.g;"), (Sums{7.0F, scaled[1], 3.0F}));
+    EXPECT_EQ(sums("s.x = s.x + f.z * f.r; if f.r < f.g { s.y = s.y + f.z * f.g; }"), (Sums{scaled[0], 2.0F, 3.0F}));
 }
 
 TEST(Language, WholeNumbersStayWhole) {
@@ -200,6 +227,33 @@ void expect_same_pixels(const Pair& pair) {
         pair.written->drain(b.data());
         ASSERT_EQ(a, b);
     }
+}
+
+/// The first block of the README whose first line begins with that.
+std::string readme_block(const std::string& beginning) {
+    std::ifstream stream(ropsim_test::source_dir() / "models/programs/README.md");
+    const std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+    const std::size_t begin = text.find("```\n" + beginning);
+    if (begin == std::string::npos) return {};
+    return text.substr(begin + 4, text.find("```", begin + 4) - begin - 4);
+}
+
+TEST(Language, TheReadmesExampleDoesWhatTheReadmeSays) {
+    const auto program = program_of(readme_block("program \"range\"")).program;
+    EXPECT_EQ(program->k(), 1U);
+    EXPECT_EQ(program->cost().operations, 7U);
+    std::vector<float> pixel(program->floats_per_pixel());
+    program->clear(pixel.data());
+    const std::array<float, 4> rgba{0.5F, 0.25F, 0.75F, 1.0F};
+    std::array<float, pipeline::largest_entry> entry{};
+    for (const float depth : {0.5F, 0.25F, 0.75F}) {
+        program->make_entry({rgba.data(), depth, 0}, entry.data());
+        EXPECT_TRUE(program->insert(pixel.data(), entry.data()));
+    }
+    const float nearest = pixel[3], farthest = pixel[4], count = pixel[5];
+    EXPECT_EQ(nearest, 0.25F);
+    EXPECT_EQ(farthest, 0.75F);
+    EXPECT_EQ(count, 3.0F);
 }
 
 TEST(Language, A6AndA7AreTheBuiltInPrograms) {

@@ -206,7 +206,9 @@ TEST(LanguageErrors, RandomProgramsAreRefusedOrRun) {
         std::vector<float> pixel(choice.program->floats_per_pixel());
         choice.program->clear(pixel.data());
         for (const float depth : {0.0F, 1.0F, std::numeric_limits<float>::infinity()}) {
-            const std::array<float, 2> entry{3.0F, depth};
+            const std::array<float, 4> rgba{std::numeric_limits<float>::quiet_NaN(), 0.0F, 0.0F, 1.0F};
+            std::array<float, 2> entry{};
+            choice.program->make_entry({rgba.data(), depth, 0}, entry.data());
             choice.program->insert(pixel.data(), entry.data());
         }
         for (const float value : pixel) ASSERT_TRUE(std::isfinite(value)) << text;

@@ -33,6 +33,15 @@ TEST(ReportsCatalogue, GeneratorsAreFoundWithAndWithoutPrefix) {
     EXPECT_EQ(reports::catalogue_find("stack").size(), 1U);
 }
 
+TEST(ReportsCatalogue, ShippedProgramFilesAreListed) {
+    for (const char* file : {"nearest_k.kb", "order_and_blend.kb"}) {
+        const auto found = reports::catalogue_find(file);
+        ASSERT_EQ(found.size(), 1U) << file;
+        EXPECT_EQ(found.front().topic, "programs");
+        EXPECT_NE(found.front().summary.find("k = 4: "), std::string::npos) << found.front().summary;
+    }
+}
+
 TEST(ReportsCatalogue, AStageNameStandsForAllItsCounters) {
     EXPECT_GT(reports::catalogue_find("rasterizer").size(), 3U);
     EXPECT_TRUE(reports::catalogue_find("rasteriz").empty());

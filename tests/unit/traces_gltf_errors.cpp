@@ -167,6 +167,21 @@ TEST(GltfErrors, PositionsThatAreNoNumbers) {
               "scene.gltf: node 0: expected a matrix of 16 finite numbers, or translation 3, rotation 4, scale 3");
 }
 
+TEST(GltfErrors, ColoursThatAreNoNumbers) {
+    for (const float bad : {std::nanf(""), -INFINITY}) {
+        GltfFile file = triangle_file();
+        file.add({0, 0, 0, 0, 0, 0, 0, 0, bad}, "VEC3");
+        file.json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = 1;
+        EXPECT_EQ(file.error(), "scene.gltf: mesh 0 primitive 0: colour 2: expected finite numbers");
+    }
+    EXPECT_EQ(error_after([](GltfFile& file) {
+                  file.json["materials"] = {
+                      {{"name", "m"}, {"pbrMetallicRoughness", {{"baseColorFactor", {1e39, 0, 0, 1}}}}}};
+                  file.json["meshes"][0]["primitives"][0]["material"] = 0;
+              }),
+              "scene.gltf: material 0 \"m\": expected finite numbers");
+}
+
 TEST(GltfErrors, NodesThatAreNoForest) {
     EXPECT_EQ(
         error_after([](GltfFile& file) { file.json["nodes"] = json::parse(R"([{"mesh": 0, "children": [0]}])"); }),

@@ -16,12 +16,11 @@ std::uint32_t operations(const Instruction& instruction) {
     case Opcode::truncate:
         return instruction.count;
     case Opcode::swap:
+    case Opcode::multiply_add:
         return 2U * instruction.count;
     case Opcode::swap_if_less:
     case Opcode::swap_if_less_or_equal:
         return 1U + 2U * instruction.count;
-    case Opcode::multiply_add:
-        return 2;
     default:
         return 1;
     }

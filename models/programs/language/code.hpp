@@ -7,8 +7,8 @@
 namespace models::language {
 
 /// Place of a float. While code is generated, it is a bank and a place in it, each bank at a multiple of bank_size;
-/// finished code counts the pixel's floats from 0 and those of the run from own_floats: its variables, then the
-/// constants.
+/// finished code counts the pixel's floats from 0 and those of the run from own_floats: the constants, then its
+/// variables.
 using Operand = std::uint16_t;
 
 enum class Bank : std::uint8_t { pixel, locals, constants };
@@ -38,7 +38,7 @@ enum class Opcode : std::uint8_t {
     divide_whole, ///< a = b / c without its fraction
     least,
     greatest,
-    multiply_add, ///< a = b + c * d, rounded twice
+    multiply_add, ///< a = b + c * d, rounded twice; `count` times: a, b and d move on, c stays
     less,         ///< a = b < c
     less_or_equal,
     equal,
@@ -65,8 +65,7 @@ struct Instruction {
 
 struct Code {
     std::vector<Instruction> instructions;           ///< the last one is the end
-    std::uint32_t locals = 0;                        ///< floats of a run; inputs first
-    std::vector<float> constants;                    ///< behind them
+    std::vector<float> constants;                    ///< a multiple of four, as an entry behind them is a render target
     std::uint32_t entries = 0, floats_per_entry = 0; ///< for loads and stores
 };
 

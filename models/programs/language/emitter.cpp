@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <fmt/format.h>
+#include <limits>
 #include <utility>
 
 namespace models::language {
@@ -10,6 +11,19 @@ namespace models::language {
 namespace {
 
 constexpr std::size_t most_instructions = 65535; ///< a jump's target has 16 bits
+
+/// Lets `before` do `next` as well, if both are products of one factor whose other operands lie side by side.
+bool continue_products(Instruction& before, Instruction& next) {
+    if (before.code != Opcode::multiply_add || before.count == std::numeric_limits<std::uint8_t>::max()) return false;
+    if (before.count == 1 && before.c != next.c && before.c != next.d) std::swap(before.c, before.d);
+    if (before.c != next.c) std::swap(next.c, next.d);
+    const auto is_beside = [&before](Operand first, Operand now) { return now == first + before.count; };
+    if (before.c != next.c || !is_beside(before.a, next.a) || !is_beside(before.b, next.b) ||
+        !is_beside(before.d, next.d))
+        return false;
+    ++before.count;
+    return true;
+}
 
 } // namespace
 
@@ -25,7 +39,15 @@ std::size_t Emitter::emit_jump(Instruction instruction) {
     return code_.instructions.size() - 1;
 }
 
-void Emitter::aim(std::size_t jump) { code_.instructions[jump].d = static_cast<Operand>(code_.instructions.size()); }
+void Emitter::aim(std::size_t jump) {
+    last_aim_ = code_.instructions.size();
+    code_.instructions[jump].d = static_cast<Operand>(last_aim_);
+}
+
+void Emitter::emit_product(Instruction instruction) {
+    if (code_.instructions.size() > last_aim_ && continue_products(code_.instructions.back(), instruction)) return;
+    emit(instruction);
+}
 
 bool Emitter::join_swap(std::size_t jump) {
     if (code_.instructions.size() != jump + 2) return false;
@@ -41,7 +63,6 @@ bool Emitter::join_swap(std::size_t jump) {
 Operand Emitter::temporary() {
     if (next_temporary_ >= most_locals)
         complain(source_, place_, fmt::format("at most {} variables and intermediate results", most_locals), "more");
-    code_.locals = std::max(code_.locals, next_temporary_ + 1);
     return operand(Bank::locals, next_temporary_++);
 }
 
@@ -67,16 +88,16 @@ Operand Emitter::placed(Operand operand) const {
     case Bank::pixel:
         break;
     case Bank::locals:
-        return static_cast<Operand>(own_floats + place);
+        return static_cast<Operand>(own_floats + code_.constants.size() + place);
     case Bank::constants:
-        return static_cast<Operand>(own_floats + code_.locals + place);
+        return static_cast<Operand>(own_floats + place);
     }
     return operand;
 }
 
 Code Emitter::take() {
     emit({});
-    code_.locals = std::max(code_.locals, first_temporary_);
+    code_.constants.resize((code_.constants.size() + 3) / 4 * 4);
     for (Instruction& one : code_.instructions) {
         const bool names_field = one.code == Opcode::load || one.code == Opcode::store;
         one.a = placed(one.a);

@@ -34,6 +34,9 @@ class Emitter {
     /// whether it did.
     bool join_swap(std::size_t jump);
 
+    /// Lets a multiply_add continue the one before it, as those of the channels of a colour do.
+    void emit_product(Instruction instruction);
+
     Operand temporary();
     /// Where a value can be read.
     Operand read(const Value& value);
@@ -47,6 +50,7 @@ class Emitter {
     const Source& source_;
     std::uint32_t first_temporary_, next_temporary_;
     Place place_;
+    std::size_t last_aim_ = 0; ///< what comes before it is not continued behind it
     Code code_;
 };
 

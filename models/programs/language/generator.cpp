@@ -284,7 +284,7 @@ class Generator {
         instruction.c = emitter_.read(evaluate(factors[0], {}));
         instruction.d = emitter_.read(evaluate(factors[1], {}));
         instruction.a = into ? *into : emitter_.temporary();
-        emitter_.emit(instruction);
+        emitter_.emit_product(instruction);
         return {false, 0.0F, instruction.a};
     }
 

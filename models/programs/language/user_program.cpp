@@ -26,12 +26,15 @@ constexpr std::uintmax_t longest_text = 1U << 20; ///< bytes
 
 class UserProgram final : public pipeline::ModifyProgram {
   public:
-    UserProgram(language::Program program, language::CompiledProgram compiled, std::uint32_t entries)
+    UserProgram(language::Program program, language::CompiledProgram&& compiled, std::uint32_t entries)
         : ModifyProgram(entries, static_cast<std::uint32_t>(program.entry.size()),
                         static_cast<std::uint32_t>(program.state.size())),
           program_(std::move(program)),
-          compiled_(std::move(compiled)),
-          cost_{language::longest_path(compiled_.insert)} {}
+          clear_(std::move(compiled.clear)),
+          make_entry_(compiled.make_entry),
+          insert_(compiled.insert),
+          drain_(compiled.drain),
+          cost_{language::longest_path(compiled.insert)} {}
 
     std::string_view id() const override { return program_.id; }
     std::string_view summary() const override { return program_.summary; }
@@ -41,31 +44,30 @@ class UserProgram final : public pipeline::ModifyProgram {
     bool needs_colour() const override { return program_.needs_colour; }
     std::uint32_t depth_slot() const override { return program_.depth_slot; }
 
-    void clear(float* pixel) const override { std::copy(compiled_.clear.begin(), compiled_.clear.end(), pixel); }
+    void clear(float* pixel) const override { std::copy(clear_.begin(), clear_.end(), pixel); }
 
     bool insert(float* pixel, const float* fragment) const override {
-        language::Run run(compiled_.insert);
-        for (std::uint32_t i = 0; i < floats_per_entry(); ++i) run.input(i) = finite(fragment[i]);
-        return run.execute(pixel);
+        return insert_.run(pixel, {fragment, floats_per_entry()});
     }
 
     void make_entry(const pipeline::Fragment& fragment, float* entry) const override {
-        language::Run run(compiled_.make_entry);
-        for (std::uint32_t i = 0; i < 4; ++i) run.input(i) = fragment.rgba == nullptr ? 0.0F : finite(fragment.rgba[i]);
-        run.input(4) = finite(fragment.depth);
-        run.input(5) = static_cast<float>(fragment.draw);
+        std::array<float, std::size(language::shader_fields)> inputs{};
+        for (std::size_t i = 0; i < 4 && fragment.rgba != nullptr; ++i) inputs[i] = finite(fragment.rgba[i]);
+        inputs[4] = finite(fragment.depth);
+        inputs[5] = static_cast<float>(fragment.draw);
         std::fill_n(entry, floats_per_entry(), 0.0F);
-        run.execute(entry);
+        make_entry_.run(entry, inputs);
     }
 
     bool drains() const override { return program_.has_drain; }
-    void drain(float* pixel) const override { language::Run(compiled_.drain).execute(pixel); }
+    void drain(float* pixel) const override { drain_.run(pixel, {}); }
 
     pipeline::Peeling peeling() const override { return program_.peeling; }
 
   private:
     language::Program program_;
-    language::CompiledProgram compiled_;
+    std::vector<float> clear_;
+    language::Script make_entry_, insert_, drain_;
     pipeline::ProgramCost cost_;
 };
 
@@ -118,5 +120,7 @@ ProgramChoice load_user_program(std::string_view path, std::uint32_t k, const la
     if (!stream) throw sim::InputError(fmt::format("{}: cannot be read", path));
     return user_program(std::string(path), std::move(text), k, overrides);
 }
+
+std::vector<std::string> shipped_user_programs() { return ropsim_build::data_files("models/programs", ".kb"); }
 
 } // namespace models

@@ -7,6 +7,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace models {
 
@@ -17,5 +18,8 @@ ProgramChoice user_program(std::string name, std::string text, std::uint32_t k,
 
 /// The program in a file: one of that path, or else of that name in the data folder models/programs.
 ProgramChoice load_user_program(std::string_view path, std::uint32_t k, const language::Overrides& overrides = {});
+
+/// Those in the data folder, as load_user_program() finds them: "nearest_k.kb" and so on.
+std::vector<std::string> shipped_user_programs();
 
 } // namespace models

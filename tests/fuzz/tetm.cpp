@@ -1,0 +1,10 @@
+// The reader of .tetm files, and the scene made of what it read.
+#include "tests/fuzz/expect_input_error.hpp"
+#include "tests/fuzz/memory_file.hpp"
+#include "traces/tetrahedra/tetm_reader.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
+    const fuzz::MemoryFile file(bytes, size);
+    fuzz::expect_result_or_input_error([&] { traces::scene_of(traces::read_tetm(traces::InputBytes(file.path()))); });
+    return 0;
+}

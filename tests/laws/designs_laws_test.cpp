@@ -1,5 +1,4 @@
-// What must hold for every design, scene and seed.
-// Source: DESIGN laws of section 2 (hazards and pictures, conservation, activities, determinism).
+// What must hold for every design, scene and seed: hazards and pictures, conservation, activities, determinism.
 #include "tests/support/effort.hpp"
 #include "tests/support/replay.hpp"
 
@@ -28,8 +27,7 @@ struct Case {
         : scene(std::move(spec)), options(std::move(knobs)), replay(scene, options) {}
 };
 
-/// Small frames that differ in what they use: indices or none, one draw or many, layers or meshes, one entry or
-/// sixteen.
+/// Small frames that differ in what they use: indices, draws, layers or meshes, entries, samples.
 const std::vector<Case>& cases() {
     static const std::vector<Case> list = [] {
         std::vector<Case> made;
@@ -178,8 +176,7 @@ void for_each_executed_pass(const Replay& replay, const RunResult& run, Visit vi
     }
 }
 
-/// Fragments in = retired + killed, from stage to stage. Up to the ROP a group of sample quads is one quad, and its
-/// pixels are one fragment each, where the design draws it so; tests and the ROP count samples.
+/// Fragments in = retired + killed, from stage to stage; a multisampled group counts as one quad up to the ROP.
 void expect_conserved(const pipeline::Pass& pass, const pipeline::FragmentStream& stream, const Json& counters,
                       bool multisampled) {
     const support::TaskCounts tasks = support::count_tasks(stream, multisampled);

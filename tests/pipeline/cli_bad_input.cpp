@@ -36,13 +36,21 @@ TEST_P(CliBadInput, IsOneLineAndTheRightStatus) { expect_one_line(run_program(Ge
 INSTANTIATE_TEST_SUITE_P(
     Arguments, CliBadInput,
     ::testing::Values(
-        Mistake{{}, 2, "expected a subcommand: compare, run, truth, geometry, validate, calibrate, study, describe"},
+        Mistake{{},
+                2,
+                "expected a subcommand: compare, run, truth, accuracy, geometry, validate, calibrate, study, describe"},
         Mistake{{"compar"}, 2, "did you mean 'compare'?"}, Mistake{{"compare"}, 2, "scene is required"},
         Mistake{{"compare", "gen:stack", "--desings", "x"}, 2, "did you mean '--designs'?"},
         Mistake{{"compare", "gen:stack", "more"}, 2, "unexpected argument 'more'"},
         Mistake{{"compare", "gen:stack", "--size"}, 2, "--size"},
         Mistake{{"run", "gen:stack", "--timeline"}, 2, "--timeline requires --out"},
         Mistake{{"run", "gen:stack", "--designs", "blender"}, 2, "did you mean '--design'?"},
+        Mistake{{"accuracy", "gen:stack", "--workload", "opaque"}, 1, "expected a workload with a truth and knobs"},
+        Mistake{{"accuracy", "gen:stack", "--sweep", "k"}, 1, "--sweep: expected KNOB=VALUE,VALUE..., got 'k'"},
+        Mistake{{"accuracy", "gen:stack", "--sweep", "kk=1"}, 1, "unknown key 'kk'"},
+        Mistake{{"accuracy", "gen:stack", "--k", "2", "--sweep", "k=1"}, 1, "--sweep: 'k' is set for all points"},
+        Mistake{{"accuracy", "gen:stack", "--sweep", "k=1", "--averaged", "4"}, 1, "--averaged"},
+        Mistake{{"accuracy", "gen:stack", "--design", "a,b"}, 1, "--design: expected one design"},
         Mistake{{"describe", "scorebord"}, 1, "did you mean 'scoreboard'?"}));
 
 INSTANTIATE_TEST_SUITE_P(

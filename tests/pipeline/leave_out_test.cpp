@@ -140,7 +140,8 @@ TEST(LeaveOut, ReasonsAreTrueOfTheFrame) {
     EXPECT_EQ(reason_for(layers.run("existing"), "programmable blender"),
               "the design does not modify pixels in the ROP");
     EXPECT_EQ(reason_for(layers.run("existing"), "index fetch"), "no draw is indexed");
-    EXPECT_EQ(reason_for(layers.run("blender"), "texture path to memory"), "no texture and no peeled layer is read");
+    EXPECT_EQ(reason_for(layers.run("blender"), "texture path to memory"),
+              "no texture, no peeled layer and no full-screen pass is read");
 }
 
 TEST(LeaveOut, AttributesThatNoPassReadsCostNoMemoryTraffic) {

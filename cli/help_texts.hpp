@@ -1,0 +1,68 @@
+// Examples that --help ends with.
+#pragma once
+
+namespace cli {
+
+inline constexpr const char* general_help = R"(Examples:
+  ropsim compare scene.glb --out report        four designs; then open report/report.html
+  ropsim compare gen:blob --k 8 --entry z      a scene made by rule
+  ropsim run scene.glb --design blender        every counter of one design
+  ropsim truth scene.glb --check --out truth   the frame by ray tracing, beside the rasterized one
+  ropsim geometry scene.glb --gpu g70          what limits the geometry feed, and what helps
+  ropsim validate geometry                     the model beside published measurements
+  ropsim study batching                        one question, a table and a plot
+  ropsim describe designs                      what can be chosen, and what it means)";
+
+inline constexpr const char* compare_help = R"(Examples:
+  ropsim compare scene.glb
+  ropsim compare scene.glb --designs existing,scoreboard --out report
+  ropsim compare scene.glb --designs all --gpu g71 --k 8 --size 1024x768 --no-images --out report
+  ropsim compare scene.glb --set scoreboard.granularity=tile8 --set rop.queue=32 --json > result.json)";
+
+inline constexpr const char* run_help = R"(Examples:
+  ropsim run scene.glb --design existing
+  ropsim run scene.glb --design scoreboard --set scoreboard.side_buffer=128
+  ropsim run scene.glb --design scoreboard --timeline --out report
+  ropsim run "gen:stack?n=64" --design blender --size 64x64 --json)";
+
+inline constexpr const char* truth_help = R"(Examples:
+  ropsim truth scene.glb --out truth
+  ropsim truth gen:slabs --workload translucency --set workload.sigma=2 --check
+  ropsim truth gen:csg --workload csg --set 'workload.expression=A & !B' --check
+  ropsim truth scene.glb --light 0,9,0,1,0,0,0,0,1 --rays 1000 --size 800x600 --out shadows)";
+
+inline constexpr const char* geometry_help = R"(Examples:
+  ropsim geometry scene.glb --gpu g70
+  ropsim geometry scene.glb --gpu r420 --prepare reorder --prepare 'batch?vertices=4096'
+  ropsim geometry scene.glb --prepare recommended --export prepared.glb
+  ropsim geometry gen:grass --gpu nv43 --submission client_arrays --json)";
+
+inline constexpr const char* validate_help = R"(Examples:
+  ropsim validate geometry
+  ropsim validate geometry --gpus g70,r420 --leave-one-out --out validation
+  ropsim validate peeling --out peeling)";
+
+inline constexpr const char* calibrate_help = R"(Examples:
+  ropsim calibrate geometry                      what the measurements say, beside what the files say
+  ropsim calibrate geometry --gpus g70 --write models/gpus)";
+
+inline constexpr const char* study_help = R"(Examples:
+  ropsim study                                   the studies there are
+  ropsim study batching --out batching
+  ropsim study tolerable_artefacts --out artefacts
+  ropsim study batching --gpus g70 --fidelity estimate
+  ropsim study my_study.toml)";
+
+inline constexpr const char* describe_help = R"(Examples:
+  ropsim describe                      an overview
+  ropsim describe params               every number of a GPU, with unit, range and meaning
+  ropsim describe stats                every counter, with unit and meaning
+  ropsim describe scoreboard           one design (GPU, workload, generator, program, parameter, stage)
+  ropsim describe --names designs      names only, one a line)";
+
+inline constexpr const char* accuracy_help = R"(Examples:
+  ropsim accuracy scene.glb+ground --workload soft-shadows --out accuracy
+  ropsim accuracy scene.glb --workload transparency --sweep k=1,2,4,8,16
+  ropsim accuracy scene.glb+ground --workload soft-shadows --sweep layers=1,2,3 --sweep samples=169,441)";
+
+} // namespace cli

@@ -11,7 +11,7 @@ namespace reports {
 namespace {
 
 constexpr Colour acne_colour{255, 60, 60}, dark_colour{70, 110, 255}, bright_colour{255, 214, 40};
-constexpr Colour silhouette_colour{70, 80, 80};
+constexpr Colour silhouette_colour{0, 84, 70};
 
 Colour grey(float visible) { return encode_srgb(visible, visible, visible); }
 

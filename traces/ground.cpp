@@ -10,8 +10,8 @@ namespace traces {
 
 void add_ground(Scene& scene) {
     if (scene.screen_space)
-        throw sim::InputError(fmt::format("{}+ground: expected a scene with a bottom, these places are on the screen",
-                                          scene.name));
+        throw sim::InputError(
+            fmt::format("{}+ground: expected a scene with a bottom, these places are on the screen", scene.name));
     const glm::vec3 middle = (scene.lo + scene.hi) / 2.0F;
     const float half = 1.5F * (scene.radius > 0.0F ? scene.radius : 1.0F);
     Mesh mesh;

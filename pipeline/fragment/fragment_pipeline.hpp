@@ -7,10 +7,10 @@
 // side serves it; a hit is available after the hit latency, like any texel. Where the shader has a critical section, it
 // asks the lock table before it reads. A miss on its way when its line is
 // invalidated serves whoever waits for it already, and is not kept. A group of sample quads is shaded once; a shader
-// that peels reads the layer before at every sample of the group, and masks those out that it does not capture. The loop
-// of a full-screen pass fetches without waiting as long as it hits, and runs as long as its longest pixel.
-// Not modelled: individual instructions; branches; fetches of one quad that go to several lines.
-// Source: specification 004, sections 7, 7.1 (t_disp, t_rd, t_done; read value rule).
+// that peels reads the layer before at every sample of the group, and masks those out that it does not capture. The
+// loop of a full-screen pass fetches without waiting as long as it hits, and runs as long as its longest pixel. Not
+// modelled: individual instructions; branches; fetches of one quad that go to several lines. Source: specification 004,
+// sections 7, 7.1 (t_disp, t_rd, t_done; read value rule).
 #pragma once
 
 #include "pipeline/fixed_queue.hpp"

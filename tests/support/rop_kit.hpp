@@ -164,7 +164,11 @@ class RopBench {
                 options.shader ? &payloads : nullptr};
     }
     pipeline::RopShape shape(const RopOptions& options) const {
-        return {1, pass.context.layout.tiles(), pass.context.shader_costs.size(), true, true,
+        return {1,
+                pass.context.layout.tiles(),
+                pass.context.shader_costs.size(),
+                true,
+                true,
                 options.shader || options.blender ? options.rop.cache_tiles : 0};
     }
 

@@ -26,7 +26,9 @@ Workload soft_shadows_workload();
 template <sim::Described P, class Build>
 Workload make_workload(std::string id, std::string summary, Build build) {
     const std::string place = fmt::format("workload {}", id);
-    return {std::move(id), std::move(summary), sim::describe<P>(),
+    return {std::move(id),
+            std::move(summary),
+            sim::describe<P>(),
             [place, build](const Scene& scene, const pipeline::View& view, const WorkloadOptions& options) {
                 return build(scene, view, read_parameters<P>(options.values, place));
             },

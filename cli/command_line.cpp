@@ -12,13 +12,34 @@ namespace cli {
 
 namespace {
 
-void add_frame_options(CLI::App& command, FrameOptions& options) {
+void add_scene(CLI::App& command, std::string& scene) {
     command
-        .add_option("scene", options.scene,
+        .add_option("scene", scene,
                     "glTF file (.glb, .gltf), FILE#N for its scene number N, tetrahedra (.vtk, .tetm), or "
                     "gen:NAME?key=value&key=value; +ground behind it lays a floor below the scene")
         ->required()
         ->type_name("SCENE");
+}
+
+void add_size(CLI::App& command, std::string& size) {
+    command.add_option("--size", size, "Pixels of the frame (default 512x512)")->type_name("WxH");
+}
+
+void add_camera(CLI::App& command, std::string& camera) {
+    command
+        .add_option(
+            "--camera", camera,
+            "auto, the number of a camera of the scene, or ex,ey,ez,tx,ty,tz,fovy (eye, target, vertical degrees)")
+        ->type_name("CAMERA");
+}
+
+void add_threads(CLI::App& command, std::string& threads) {
+    command.add_option("--threads", threads, "Threads (default: all cores); results do not depend on it")
+        ->type_name("N");
+}
+
+void add_frame_options(CLI::App& command, FrameOptions& options) {
+    add_scene(command, options.scene);
     command.add_option("--gpu", options.gpu, "Name of a GPU or a .toml file (default neutral)")->type_name("GPU");
     command.add_option("--workload", options.workload, "Rendering method (default transparency)")->type_name("NAME");
     command.add_option("--k", options.k, "Entries per pixel of the k-buffer (default 4)")->type_name("K");
@@ -29,22 +50,17 @@ void add_frame_options(CLI::App& command, FrameOptions& options) {
                     "What a fragment does to its pixel: nearest-k, order-and-blend, mlab, or a file *.kb (default "
                     "nearest-k)")
         ->type_name("NAME");
-    command.add_option("--size", options.size, "Pixels of the frame (default 512x512)")->type_name("WxH");
+    add_size(command, options.size);
     command.add_option("--samples", options.samples, "Samples of a pixel, against jagged edges: 1, 4 or 8 (default 1)")
         ->type_name("N");
-    command
-        .add_option(
-            "--camera", options.camera,
-            "auto, the number of a camera of the scene, or ex,ey,ez,tx,ty,tz,fovy (eye, target, vertical degrees)")
-        ->type_name("CAMERA");
+    add_camera(command, options.camera);
     command
         .add_option("--light", options.light,
                     "Square light of soft-shadows: auto, the number of a spot light of the scene, or px,py,pz,tx,ty,tz "
                     "(place and target)")
         ->type_name("LIGHT");
     command.add_option("--seed", options.seed, "Seed of everything random in the hardware (default 1)")->type_name("N");
-    command.add_option("--threads", options.threads, "Threads (default: all cores); results do not depend on it")
-        ->type_name("N");
+    add_threads(command, options.threads);
     command
         .add_option("--set", options.settings,
                     "Overrides a number of the GPU, of a design or of the workload (workload.KEY); may be repeated")
@@ -61,23 +77,14 @@ void add_output_options(CLI::App& command, OutputOptions& options) {
 }
 
 void add_truth(CLI::App& command, TruthCommand& options) {
-    command
-        .add_option("scene", options.scene,
-                    "glTF file (.glb, .gltf), FILE#N for its scene number N, tetrahedra (.vtk, .tetm), or "
-                    "gen:NAME?key=value&key=value; +ground behind it lays a floor below the scene")
-        ->required()
-        ->type_name("SCENE");
+    add_scene(command, options.scene);
     command
         .add_option("--workload", options.workload,
                     "Rendering method: transparency, translucency, csg, opaque or soft-shadows (default transparency)")
         ->type_name("NAME");
     command.add_option("--k", options.k, "Entries per pixel of the k-buffer that --check compares")->type_name("K");
-    command.add_option("--size", options.size, "Pixels of the frame (default 512x512)")->type_name("WxH");
-    command
-        .add_option(
-            "--camera", options.camera,
-            "auto, the number of a camera of the scene, or ex,ey,ez,tx,ty,tz,fovy (eye, target, vertical degrees)")
-        ->type_name("CAMERA");
+    add_size(command, options.size);
+    add_camera(command, options.camera);
     command.add_option("--set", options.settings, "Sets a parameter of the workload (workload.KEY); may be repeated")
         ->type_name("PATH=VALUE")
         ->allow_extra_args(false)
@@ -93,8 +100,7 @@ void add_truth(CLI::App& command, TruthCommand& options) {
                     "Rays to the light from each surface, as near as n x n comes to it (default 1000)")
         ->type_name("N");
     command.add_option("--seed", options.seed, "Seed of the places on the light (default 1)")->type_name("N");
-    command.add_option("--threads", options.threads, "Threads (default: all cores); results do not depend on it")
-        ->type_name("N");
+    add_threads(command, options.threads);
     command.add_flag("--check", options.check, "Also rasterize the frame in submission order and compare");
     command.add_option("--out", options.directory, "Folder for truth.json and pictures")->type_name("DIR");
     command.add_flag("--json", options.json, "Print one JSON document on standard output, and nothing else");
@@ -132,12 +138,7 @@ void add_accuracy(CLI::App& command, AccuracyCommand& options) {
 }
 
 void add_geometry(CLI::App& command, GeometryCommand& options) {
-    command
-        .add_option("scene", options.scene,
-                    "glTF file (.glb, .gltf), FILE#N for its scene number N, tetrahedra (.vtk, .tetm), or "
-                    "gen:NAME?key=value&key=value; +ground behind it lays a floor below the scene")
-        ->required()
-        ->type_name("SCENE");
+    add_scene(command, options.scene);
     command.add_option("--gpu", options.gpu, "Name of a GPU or a .toml file (default neutral)")->type_name("GPU");
     command
         .add_option(
@@ -173,8 +174,7 @@ void add_measure(CLI::App& command, MeasureCommand& options, const char* footer,
     command.add_option("--gpus", options.gpus, "GPUs, separated by commas (default: all that were measured)")
         ->type_name("NAMES");
     command.add_option("--fidelity", options.fidelity, fidelity)->type_name("NAME");
-    command.add_option("--threads", options.threads, "Threads (default: all cores); results do not depend on it")
-        ->type_name("N");
+    add_threads(command, options.threads);
     command.add_flag("--json", options.json, "Print one JSON document on standard output, and nothing else");
     command.footer(footer);
 }

@@ -8,11 +8,11 @@
 #include "pipeline/functional/sample_pattern.hpp"
 #include "pipeline/machine.hpp"
 #include "reports/numbers.hpp"
+#include "reports/stopwatch.hpp"
 #include "traces/camera.hpp"
 #include "traces/submission.hpp"
 #include "traces/workloads.hpp"
 
-#include <chrono>
 #include <fmt/format.h>
 #include <set>
 #include <sys/resource.h>
@@ -22,19 +22,6 @@
 namespace reports {
 
 namespace {
-
-class Stopwatch {
-  public:
-    double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count(); }
-
-  private:
-    std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
-};
-
-void enter(const Supervision& supervision, Progress::Phase phase) {
-    if (supervision.stop != nullptr && *supervision.stop) throw sim::Interrupted();
-    if (supervision.progress != nullptr) supervision.progress->phase = phase;
-}
 
 // GPU and designs read one configuration, so that a misspelt key of either is found.
 void read_hardware(const ComparisonRequest& request, ComparisonInput& input) {
@@ -212,6 +199,13 @@ SceneFacts facts_of(const traces::Scene& scene, const std::string& camera) {
             scene.resources->textures.size(),
             camera,
             scene.notes};
+}
+
+void enter(const Supervision& supervision, Progress::Phase phase) {
+    if (supervision.stop != nullptr && *supervision.stop) throw sim::Interrupted();
+    if (supervision.progress == nullptr) return;
+    supervision.progress->share = 0.0;
+    supervision.progress->phase = phase;
 }
 
 unsigned core_count() { return std::max(1U, std::thread::hardware_concurrency()); }

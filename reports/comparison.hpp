@@ -47,6 +47,9 @@ struct Supervision {
     sim::Observer* observer = nullptr; ///< sees the run; for comparisons of one design only
 };
 
+/// The next phase begins. Throws sim::Interrupted when it shall not.
+void enter(const Supervision& supervision, Progress::Phase phase);
+
 /// The frame as the application submits it for designs that ask for another order or for batches.
 struct SubmittedFrame {
     pipeline::SubmissionPlan plan;

@@ -1,32 +1,17 @@
 #include "reports/truth/truth_run.hpp"
 
 #include "pipeline/functional/frame_streams.hpp"
+#include "reports/stopwatch.hpp"
 #include "reports/truth/truth_cache.hpp"
 #include "sim/check.hpp"
 #include "traces/camera.hpp"
 #include "traces/workloads.hpp"
 
-#include <chrono>
 #include <cmath>
 
 namespace reports {
 
 namespace {
-
-class Stopwatch {
-  public:
-    double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count(); }
-
-  private:
-    std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
-};
-
-void enter(const Supervision& supervision, Progress::Phase phase) {
-    if (supervision.stop != nullptr && *supervision.stop) throw sim::Interrupted();
-    if (supervision.progress == nullptr) return;
-    supervision.progress->share = 0.0;
-    supervision.progress->phase = phase;
-}
 
 std::function<void(double)> share_of(const Supervision& supervision) {
     if (supervision.progress == nullptr) return {};

@@ -2,6 +2,7 @@
 #include "reports/truth/ray_scene.hpp"
 #include "sim/check.hpp"
 #include "tests/support/program_run.hpp"
+#include "tests/support/ray_kit.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -16,15 +17,8 @@ using ropsim_test::ProgramOutcome;
 using ropsim_test::TemporaryFolder;
 
 /// Runs of the program that share a cache of their own.
-class CliTruth : public ::testing::Test {
+class CliTruth : public support::RayTest {
   protected:
-    void SetUp() override {
-        try {
-            reports::require_rays();
-        } catch (const sim::InputError& error) {
-            GTEST_SKIP() << error.what();
-        }
-    }
     ProgramOutcome run(const std::vector<std::string>& further, std::vector<std::string> environment = {}) const {
         std::vector<std::string> arguments{"truth", "gen:slabs", "--size", "48x48"};
         arguments.insert(arguments.end(), further.begin(), further.end());

@@ -4,6 +4,7 @@
 #include "reports/truth/frame_surfaces.hpp"
 #include "sim/check.hpp"
 #include "tests/support/box_ray.hpp"
+#include "tests/support/ray_kit.hpp"
 #include "tests/support/replay.hpp"
 
 #include <cmath>
@@ -17,16 +18,7 @@ using reports::TruthError;
 using support::Replay;
 using support::ReplayOptions;
 
-class TruthTest : public ::testing::Test {
-  protected:
-    void SetUp() override {
-        try {
-            reports::require_rays();
-        } catch (const sim::InputError& error) {
-            GTEST_SKIP() << error.what();
-        }
-    }
-};
+class TruthTest : public support::RayTest {};
 
 Truth truth_of(const pipeline::Frame& frame, unsigned threads = 0) {
     const reports::RayScene scene(frame.resources, frame.draws);

@@ -2,13 +2,27 @@
 #pragma once
 
 #include "reports/truth/ray_scene.hpp"
+#include "sim/check.hpp"
 #include "tests/support/functional_scene.hpp"
 
 #include <cmath>
+#include <gtest/gtest.h>
 #include <memory>
 #include <numbers>
 
 namespace support {
+
+/// Skipped where rays cannot be traced.
+class RayTest : public ::testing::Test {
+  protected:
+    void SetUp() override {
+        try {
+            reports::require_rays();
+        } catch (const sim::InputError& error) {
+            GTEST_SKIP() << error.what();
+        }
+    }
+};
 
 inline std::unique_ptr<reports::RayScene> ray_scene(tests::FunctionalScene scene) {
     scene.resources.place();

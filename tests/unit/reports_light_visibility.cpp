@@ -14,16 +14,7 @@ using tests::MeshData;
 
 constexpr double light_height = 4.0, half_edge = 1.0;
 
-class LightVisibility : public ::testing::Test {
-  protected:
-    void SetUp() override {
-        try {
-            reports::require_rays();
-        } catch (const sim::InputError& error) {
-            GTEST_SKIP() << error.what();
-        }
-    }
-};
+class LightVisibility : public support::RayTest {};
 
 SquareLight lamp() { return {{0.0, light_height, 0.0}, {half_edge, 0.0, 0.0}, {0.0, 0.0, half_edge}}; }
 

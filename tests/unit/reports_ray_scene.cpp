@@ -20,16 +20,7 @@ using reports::RayHit;
 using reports::WorldRay;
 using tests::MeshData;
 
-class RayScene : public ::testing::Test {
-  protected:
-    void SetUp() override {
-        try {
-            reports::require_rays();
-        } catch (const sim::InputError& error) {
-            GTEST_SKIP() << error.what();
-        }
-    }
-};
+class RayScene : public support::RayTest {};
 
 MeshData mesh_of(const traces::Mesh& mesh) { return {mesh.positions, {}, {}, {}, mesh.indices}; }
 

@@ -1,0 +1,16 @@
+// Seconds of this machine since it was made.
+#pragma once
+
+#include <chrono>
+
+namespace reports {
+
+class Stopwatch {
+  public:
+    double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count(); }
+
+  private:
+    std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+} // namespace reports

@@ -8,6 +8,7 @@ inline constexpr const char* general_help = R"(Examples:
   ropsim compare gen:blob --k 8 --entry z      a scene made by rule
   ropsim run scene.glb --design blender        every counter of one design
   ropsim truth scene.glb --check --out truth   the frame by ray tracing, beside the rasterized one
+  ropsim accuracy scene.glb --sweep k=1,2,4    a method's error beside its run time
   ropsim geometry scene.glb --gpu g70          what limits the geometry feed, and what helps
   ropsim validate geometry                     the model beside published measurements
   ropsim study batching                        one question, a table and a plot

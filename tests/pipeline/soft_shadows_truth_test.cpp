@@ -56,7 +56,7 @@ TEST(SoftShadowsS6, MoreLayersBleedLess) {
     }
 }
 
-TEST(Accuracy, HardShadowsOfManyLightsComeNearerAndTakeLonger) {
+TEST(Accuracy, HardShadowsOfManyLightsComeNearerInMoreTime) {
     AccuracyRequest request = bumpy_ball();
     request.comparison.workload_settings = {"map_size=256"};
     request.sweep = {{"method", {"hard"}}};

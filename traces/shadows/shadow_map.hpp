@@ -8,6 +8,7 @@
 #include "sim/field.hpp"
 #include "traces/area_light.hpp"
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>

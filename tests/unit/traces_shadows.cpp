@@ -287,6 +287,9 @@ TEST(ShadowMap, SlopeBiasGrowsWithTheSlopeUpToItsBound) {
     ShadowMapOptions options{
         .resolution = 64, .layers = 1, .format = ShadowFormat::rgba32f, .bias = ShadowBias::none, .gscale = 3.0F};
     EXPECT_NEAR(map_of(light, options, {ramp, plane(20.0)}).bias(0, 20, 20), 3.0 * 2.0 / 64, 1e-4);
+    options.gscale = 1e38F;
+    EXPECT_TRUE(std::isfinite(map_of(light, options, {ramp, plane(20.0)}).bias(0, 20, 20)));
+    options.gscale = 3.0F;
     options.gmax = 0.05F;
     EXPECT_EQ(map_of(light, options, {ramp, plane(20.0)}).bias(0, 20, 20), 0.05F);
     options.bias = ShadowBias::midpoint; // the larger of the two

@@ -55,7 +55,7 @@ float ShadowMap::slope(std::span<const float> distances, std::uint32_t layer, st
     for (const float next : {at(x + 1 < r ? x + 1 : x, y), at(x, y + 1 < r ? y + 1 : y)})
         if (next < sentinel_) steepest = std::max(steepest, std::abs(next - here));
     const float bias = options_.gscale * steepest;
-    return options_.gmax > 0.0F ? std::min(bias, options_.gmax) : bias;
+    return std::min(bias, options_.gmax > 0.0F ? options_.gmax : sentinel_); // finite, however steep
 }
 
 void ShadowMap::keep_slopes(std::span<const float> distances) {

@@ -30,7 +30,7 @@ View view_of_sample(const View& view, std::uint32_t sample);
 template <class T>
 std::span<T> plane_of_sample(const View& view, std::uint32_t sample, std::span<T> places, std::size_t values) {
     const std::size_t row = std::size_t{view.width} * values;
-    return places.subspan(sample * plane_rows(view.height, view.samples) * row, view.height * row);
+    return places.subspan(std::size_t{sample} * plane_rows(view.height, view.samples) * row, view.height * row);
 }
 
 /// The mean over the samples of each pixel. Samples of one value have exactly that mean.

@@ -99,7 +99,7 @@ void ShadowMap::build_hierarchy() {
         std::vector<float> coarser(std::size_t{size / 2} * (size / 2));
         for (std::uint32_t y = 0; y < size / 2; ++y)
             for (std::uint32_t x = 0; x < size / 2; ++x) {
-                const float* upper = finer.data() + std::size_t{2 * y} * size + std::size_t{2} * x;
+                const float* upper = finer.data() + std::size_t{2} * y * size + std::size_t{2} * x;
                 coarser[std::size_t{y} * (size / 2) + x] =
                     std::min(std::min(upper[0], upper[1]), std::min(upper[size], upper[size + 1]));
             }

@@ -19,7 +19,7 @@ struct NearlySorted {
         const float depth = fragment[slot];
         if (!(entries[slot] <= depth)) return popped;
         std::swap_ranges(popped.begin(), popped.end(), entries);
-        for (float *entry = entries + floats, *end = entries + k * floats; entry != end; entry += floats)
+        for (float *entry = entries + floats, *end = entries + std::size_t{k} * floats; entry != end; entry += floats)
             if (entry[slot] <= depth) std::swap_ranges(entry, entry + floats, entry - floats);
         return popped;
     }

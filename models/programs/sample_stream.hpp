@@ -39,7 +39,8 @@ class SampleStream : public pipeline::ModifyProgram {
 
     bool drains() const override { return true; }
     void drain(float* pixel) const override {
-        for (std::uint32_t i = 0; i + 1 < k(); ++i) look_at(pixel + i * floats, pixel + (i + 1) * floats, state(pixel));
+        for (std::uint32_t i = 0; i + 1 < k(); ++i)
+            look_at(pixel + std::size_t{i} * floats, pixel + std::size_t{i + 1} * floats, state(pixel));
         empty_entries(pixel);
     }
 
@@ -57,7 +58,7 @@ class SampleStream : public pipeline::ModifyProgram {
 
     void empty_entries(float* pixel) const {
         for (std::uint32_t i = 0; i < k(); ++i) {
-            pixel[i * floats] = sentinel_depth;
+            pixel[std::size_t{i} * floats] = sentinel_depth;
             pixel[i * floats + 1] = 0.0F;
         }
     }

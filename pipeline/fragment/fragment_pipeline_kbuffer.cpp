@@ -137,7 +137,7 @@ void FragmentPipeline::fill_l1(const Thread& thread, std::uint64_t targets) {
         if (line == TextureCache::none) continue;
         for (std::uint32_t pixel = 0; pixel < 4; ++pixel) {
             const float* from = payloads_->values(thread.task.slot, pixel) + std::size_t{first} * 4;
-            std::copy(from, from + line_targets_ * 4, l1_.data(line, pixel, 0));
+            std::copy(from, from + std::size_t{line_targets_} * 4, l1_.data(line, pixel, 0));
             l1_.version(line, pixel) = payloads_->version(thread.task.slot, pixel, first);
         }
     }

@@ -368,7 +368,7 @@ std::vector<float> clear_of(const Setting& setting) {
         const auto named = [&](const Definition& one) { return one.name == field.name; };
         const auto slot = std::find_if(program.entry.begin(), program.entry.end(), named) - program.entry.begin();
         for (std::uint32_t i = 0; i < setting.k; ++i)
-            pixel[i * setting.floats() + static_cast<std::size_t>(slot)] = generator.constant(field.value);
+            pixel[std::size_t{i} * setting.floats() + static_cast<std::size_t>(slot)] = generator.constant(field.value);
     }
     for (std::size_t i = 0; i < program.state.size(); ++i)
         pixel[entries + i] = generator.constant(program.state[i].value);

@@ -120,8 +120,9 @@ CornerWeights AttributePlanes::at(std::int32_t x, std::int32_t y, unsigned cover
                                   const std::array<SampleOffset, 4>& from_centres) const {
     std::array<Shares, 3> shares;
     for (std::size_t pixel = 0; pixel < 4; ++pixel) {
-        const double px = x + static_cast<double>(pixel % 2) + pixels(from_centres[pixel].x);
-        const double py = y + static_cast<double>(pixel / 2) + pixels(from_centres[pixel].y);
+        const std::size_t column = pixel % 2, row = pixel / 2;
+        const double px = x + static_cast<double>(column) + pixels(from_centres[pixel].x);
+        const double py = y + static_cast<double>(row) + pixels(from_centres[pixel].y);
         for (std::size_t i = 0; i < 3; ++i)
             shares[i][pixel] = (constant_[i] + step_x_[i] * px + step_y_[i] * py) * scale_[i];
     }

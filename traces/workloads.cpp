@@ -41,6 +41,15 @@ pipeline::Frame kbuffer_frame(pipeline::Frame frame, pipeline::FragmentColour co
     return graph.lower();
 }
 
+Workload taking(Workload workload, void (*change)(WorkloadOptions&, const std::string&), std::string name) {
+    workload.build = [build = std::move(workload.build), change,
+                      name = std::move(name)](const Scene& scene, const pipeline::View& view, WorkloadOptions options) {
+        change(options, name);
+        return build(scene, view, options);
+    };
+    return workload;
+}
+
 void as_text(WorkloadOptions& options, const std::string& name) {
     const auto found = options.values.find(name);
     if (found != options.values.end() && found->is_number()) *found = found->dump();

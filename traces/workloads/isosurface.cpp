@@ -47,14 +47,9 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const Isos
 } // namespace
 
 Workload isosurface_workload() {
-    Workload workload = make_workload<IsosurfaceParams>(
-        "isosurface", "isosurfaces of a scalar field on tetrahedra, found between their faces", build);
-    workload.build = [build = std::move(workload.build)](const Scene& scene, const pipeline::View& view,
-                                                         WorkloadOptions options) {
-        as_list(options, "iso");
-        return build(scene, view, options);
-    };
-    return workload;
+    return taking(make_workload<IsosurfaceParams>(
+                      "isosurface", "isosurfaces of a scalar field on tetrahedra, found between their faces", build),
+                  as_list, "iso");
 }
 
 } // namespace traces

@@ -42,6 +42,9 @@ pipeline::Frame frame_of(const Scene& scene, const pipeline::View& view);
 /// program, and the picture that its resolve makes.
 pipeline::Frame kbuffer_frame(pipeline::Frame frame, pipeline::FragmentColour colour = pipeline::FragmentColour::lit);
 
+/// The workload with `change(options, name)` applied to what it is given: as_text() or as_list().
+Workload taking(Workload workload, void (*change)(WorkloadOptions&, const std::string&), std::string name);
+
 /// Makes a text of a parameter that may be a number.
 void as_text(WorkloadOptions& options, const std::string& name);
 

@@ -80,14 +80,10 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const Part
 } // namespace
 
 Workload particles_workload() {
-    Workload workload = make_workload<ParticlesParams>(
-        "particles", "every vertex as a sprite of constant size: isosurfaces of its scalar, or nearest layers", build);
-    workload.build = [build = std::move(workload.build)](const Scene& scene, const pipeline::View& view,
-                                                         WorkloadOptions options) {
-        as_list(options, "iso");
-        return build(scene, view, options);
-    };
-    return workload;
+    return taking(make_workload<ParticlesParams>(
+                      "particles",
+                      "every vertex as a sprite of constant size: isosurfaces of its scalar, or nearest layers", build),
+                  as_list, "iso");
 }
 
 } // namespace traces

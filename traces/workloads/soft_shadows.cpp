@@ -307,20 +307,17 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const Soft
 } // namespace
 
 Workload soft_shadows_workload() {
-    Workload workload = make_workload<SoftShadowParams>(
-        "soft-shadows", "shadows of a square light from a layered shadow map, captured by a k-buffer", build);
-    workload.build = [build = std::move(workload.build)](const Scene& scene, const pipeline::View& view,
-                                                         WorkloadOptions options) {
-        as_text(options, "light");
-        return build(scene, view, options);
-    };
-    return std::move(workload).with({{"layers", {"1", "2", "3"}},
-                                     {"map_size", {"256", "512", "1024", "2048"}},
-                                     {"samples", {"9", "49", "169", "289", "441", "961", "1089"}},
-                                     {"iterations", {"0", "1", "2"}},
-                                     {"gscale", {"0", "1", "4", "10"}},
-                                     {"format", {"rgba16f", "rgba32f"}},
-                                     {"method", {"layered", "hard", "pcf"}}});
+    return taking(make_workload<SoftShadowParams>(
+                      "soft-shadows", "shadows of a square light from a layered shadow map, captured by a k-buffer",
+                      build),
+                  as_text, "light")
+        .with({{"layers", {"1", "2", "3"}},
+               {"map_size", {"256", "512", "1024", "2048"}},
+               {"samples", {"9", "49", "169", "289", "441", "961", "1089"}},
+               {"iterations", {"0", "1", "2"}},
+               {"gscale", {"0", "1", "4", "10"}},
+               {"format", {"rgba16f", "rgba32f"}},
+               {"method", {"layered", "hard", "pcf"}}});
 }
 
 } // namespace traces

@@ -70,14 +70,10 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const Tran
 } // namespace
 
 Workload translucency_workload() {
-    Workload workload = make_workload<TranslucencyParams>(
-        "translucency", "light of the background, absorbed along its way through the objects", build);
-    workload.build = [build = std::move(workload.build)](const Scene& scene, const pipeline::View& view,
-                                                         WorkloadOptions options) {
-        as_list(options, "sigma");
-        return build(scene, view, options);
-    };
-    return std::move(workload).with({{"k", {"2", "4", "8", "16", "32"}}});
+    return taking(make_workload<TranslucencyParams>(
+                      "translucency", "light of the background, absorbed along its way through the objects", build),
+                  as_list, "sigma")
+        .with({{"k", {"2", "4", "8", "16", "32"}}});
 }
 
 } // namespace traces

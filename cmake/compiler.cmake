@@ -8,7 +8,10 @@ set(CMAKE_CXX_FLAGS_DEBUG "-O0 -g")
 
 # Linked by our own targets only. It is not exported: whoever uses an installed ropsim chooses their own warnings.
 add_library(ropsim_compiler INTERFACE)
-target_compile_options(ropsim_compiler INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion)
+target_compile_options(ropsim_compiler INTERFACE -Wall -Wextra -Wpedantic -Wconversion)
+if(NOT ROPSIM_UNITY) # there, a file's own name may be a local one of its neighbour
+    target_compile_options(ropsim_compiler INTERFACE -Wshadow)
+endif()
 if(ROPSIM_WERROR)
     target_compile_options(ropsim_compiler INTERFACE -Werror)
 endif()

@@ -19,7 +19,15 @@ function(ropsim_layer name)
         $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/generated>
         $<INSTALL_INTERFACE:include/ropsim>)
     target_link_libraries(ropsim_${name} PUBLIC ${LAYER_LINK} PRIVATE $<BUILD_INTERFACE:ropsim_compiler>)
+    ropsim_unity(ropsim_${name})
     set_property(GLOBAL APPEND PROPERTY ROPSIM_LAYERS ropsim_${name})
+endfunction()
+
+# Most of a file's compile time are the headers it includes, so several files together take little longer than one.
+function(ropsim_unity target)
+    if(ROPSIM_UNITY)
+        set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 12)
+    endif()
 endfunction()
 
 # ropsim_module(NAME FOLDER targets...): the sources of FOLDER as ropsim_NAME.so, loaded at run time when it is needed.

@@ -6,6 +6,7 @@ option(ROPSIM_IMAGES "Build the module that reads and writes images (needs OpenI
 option(ROPSIM_RAYS "Build the module that traces rays (needs Embree 3)" ON)
 option(ROPSIM_WERROR "Treat warnings as errors" ON)
 option(ROPSIM_FUZZ "Build the libFuzzer programs of tests/fuzz (needs clang)" OFF)
+option(ROPSIM_UNITY "Compile the files of a layer several at a time: a build from nothing takes a third of the time" OFF)
 set(ROPSIM_SANITIZE "" CACHE STRING "Value for -fsanitize=, e.g. address,undefined or thread")
 
 find_program(ROPSIM_CCACHE ccache)

@@ -1,12 +1,12 @@
 // A whole GPU as numbers: the parameters of every unit, by section of its file in models/gpus.
 #pragma once
 
-#include "pipeline/fragment/fragment_pipeline.hpp"
+#include "pipeline/fragment/fragment_params.hpp"
 #include "pipeline/fragment/reorder_buffer.hpp"
 #include "pipeline/geometry/geometry_front.hpp"
-#include "pipeline/memory/memory_system.hpp"
-#include "pipeline/output/crossbar.hpp"
-#include "pipeline/output/rop.hpp"
+#include "pipeline/memory/memory_params.hpp"
+#include "pipeline/output/crossbar_params.hpp"
+#include "pipeline/output/rop_params.hpp"
 #include "pipeline/raster/early_depth_test.hpp"
 #include "pipeline/raster/rasterizer.hpp"
 

@@ -1,9 +1,13 @@
 // The units of a machine and the surfaces they work on; private to machine*.cpp.
 #pragma once
 
+#include "pipeline/fragment/fragment_pipeline.hpp"
 #include "pipeline/fragment/fragment_scheduler.hpp"
 #include "pipeline/fragment/lock_table.hpp"
 #include "pipeline/machine.hpp"
+#include "pipeline/memory/memory_system.hpp"
+#include "pipeline/output/crossbar.hpp"
+#include "pipeline/output/rop.hpp"
 #include "sim/described_json.hpp"
 
 #include <deque>

@@ -20,7 +20,7 @@ namespace {
 constexpr std::uint32_t window = 8192;  ///< primitives that are counted in a row
 constexpr std::uint32_t warm_up = 1024; ///< primitives before a window that fill the caches
 
-struct Counts {
+struct PathCounts {
     std::uint64_t primitives = 0, runs = 0, lines = 0;
     std::uint64_t rows = 0; ///< lines in another row of memory than the line before them in their bank
 };
@@ -45,7 +45,7 @@ class OpenRows {
     std::vector<std::uint64_t> open_;
 };
 
-/// Counts on the reuse model, the line cache and the rows of memory, without time.
+/// PathCounts on the reuse model, the line cache and the rows of memory, without time.
 class DrawCounter {
   public:
     DrawCounter(const GpuParams& gpu, const Frame& frame, const Draw& draw)
@@ -57,18 +57,18 @@ class DrawCounter {
                  gpu.geometry.vertex_fetch.cache.line),
           rows_(gpu.memory) {}
 
-    /// Counts [first, end), with caches that the primitives before `first` have filled.
-    void count(std::uint32_t first, std::uint32_t end, Counts& counts) {
+    /// PathCounts [first, end), with caches that the primitives before `first` have filled.
+    void count(std::uint32_t first, std::uint32_t end, PathCounts& counts) {
         const bool indexed = geometry_.index_type != IndexType::none;
         reuse_.begin_draw(indexed ? geometry_.vertex_count : std::max(geometry_.vertex_count, geometry_.index_count),
                           indexed);
-        Counts unused;
+        PathCounts unused;
         for (std::uint32_t i = first > warm_up ? first - warm_up : 0; i < first; ++i) primitive(i, unused);
         for (std::uint32_t i = first; i < end; ++i) primitive(i, counts);
     }
 
   private:
-    void primitive(std::uint32_t number, Counts& counts) {
+    void primitive(std::uint32_t number, PathCounts& counts) {
         const auto vertices = reader_(number);
         const ReuseResult reuse = reuse_.triangle(vertices);
         ++counts.primitives;
@@ -92,8 +92,8 @@ class DrawCounter {
 };
 
 /// @param share of the primitives that may be looked at; windows lie evenly over the draw
-Counts sample(const GpuParams& gpu, const Frame& frame, const Draw& draw, double share) {
-    Counts counts;
+PathCounts sample(const GpuParams& gpu, const Frame& frame, const Draw& draw, double share) {
+    PathCounts counts;
     DrawCounter counter(gpu, frame, draw);
     const std::uint32_t primitives = frame.resources->geometries[draw.geometry].triangle_count();
     const auto wanted = static_cast<std::uint32_t>(std::ceil(share * primitives / window));
@@ -113,7 +113,8 @@ std::uint64_t scaled(std::uint64_t count, double factor) {
     return static_cast<std::uint64_t>(std::llround(static_cast<double>(count) * factor));
 }
 
-GeometryDrawStats stats_of(const Frame& frame, const Draw& draw, const Counts& counts, const GeometryParams& params) {
+GeometryDrawStats stats_of(const Frame& frame, const Draw& draw, const PathCounts& counts,
+                           const GeometryParams& params) {
     const Geometry& geometry = frame.resources->geometries[draw.geometry];
     const std::uint64_t instances = draw.instances.size();
     const std::uint64_t primitives = geometry.triangle_count() * instances;
@@ -134,7 +135,7 @@ GeometryDrawStats stats_of(const Frame& frame, const Draw& draw, const Counts& c
 
 /// Time of the banks of memory: a line keeps its bank for its transfer and, where it opens a row, for that. Served in
 /// order, as if no request overtook another.
-double bank_cycles(const GpuParams& gpu, const Counts& counts, double factor) {
+double bank_cycles(const GpuParams& gpu, const PathCounts& counts, double factor) {
     const MemoryParams& memory = gpu.memory;
     const double banks = static_cast<double>(memory.partitions) * memory.controller.dram.banks;
     const double transfer =
@@ -187,7 +188,7 @@ VertexPathResult estimate_vertex_path(const GpuParams& gpu, const Frame& frame, 
     VertexPathResult result;
     const std::vector<DrawTerms> terms = draw_terms(gpu.host, frame);
     std::uint64_t primitives = 0, looked_at = 0;
-    std::map<std::pair<std::uint32_t, std::uint32_t>, Counts> known; // draws of one geometry and material are alike
+    std::map<std::pair<std::uint32_t, std::uint32_t>, PathCounts> known; // draws of one geometry and material are alike
     for (const Draw& draw : frame.draws)
         if (known.try_emplace({draw.geometry, draw.material}).second)
             primitives += frame.resources->geometries[draw.geometry].triangle_count();
@@ -207,7 +208,7 @@ VertexPathResult estimate_vertex_path(const GpuParams& gpu, const Frame& frame, 
             VertexPathDraw& entry = result.draws[number];
             const Draw& draw = frame.draws[number];
             entry.terms = terms[number];
-            const Counts& counts = known.at({draw.geometry, draw.material});
+            const PathCounts& counts = known.at({draw.geometry, draw.material});
             entry.counts = stats_of(frame, draw, counts, gpu.geometry);
             entry.demand = vertex_path_demand(gpu, frame, number, entry.terms, entry.counts);
             const double factor = static_cast<double>(entry.counts.primitives.value) /

@@ -1,5 +1,6 @@
 // The detailed run of the vertex path.
 #include "pipeline/geometry/geometry_front.hpp"
+#include "pipeline/memory/memory_system.hpp"
 #include "pipeline/vertex_path.hpp"
 #include "sim/described.hpp"
 

@@ -2,7 +2,10 @@
 
 #include "pipeline/fragment/fragment_scheduler.hpp"
 #include "pipeline/fragment/lock_table.hpp"
+#include "pipeline/fragment/fragment_pipeline.hpp"
 #include "pipeline/gpu_params.hpp"
+#include "pipeline/memory/memory_system.hpp"
+#include "pipeline/output/crossbar.hpp"
 
 #include <algorithm>
 #include <charconv>

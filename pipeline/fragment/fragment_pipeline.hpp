@@ -14,6 +14,7 @@
 #pragma once
 
 #include "pipeline/fixed_queue.hpp"
+#include "pipeline/fragment/fragment_params.hpp"
 #include "pipeline/fragment/messages.hpp"
 #include "pipeline/fragment/pass_context.hpp"
 #include "pipeline/fragment/quad_payloads.hpp"
@@ -28,32 +29,6 @@
 #include <vector>
 
 namespace pipeline {
-
-struct FragmentParams {
-    std::uint32_t pipes = 6;
-    std::uint32_t quads_in_flight = 256;
-    std::uint32_t alu_per_clk = 2;
-    std::uint32_t latency = 30;
-    std::uint32_t registers = 4096;
-
-    static constexpr auto fields() {
-        using P = FragmentParams;
-        return std::tuple{
-            sim::field<&P::pipes>("Quad pipelines, four fragments wide (P)").unit("pipes").range(1, 60),
-            sim::field<&P::quads_in_flight>("Quads in flight per pipe (W)").unit("quads").range(1, 4096),
-            sim::field<&P::alu_per_clk>("Vector instructions issued per cycle for a quad")
-                .unit("instructions")
-                .range(1, 64),
-            sim::field<&P::latency>(
-                "Cycles through an empty pipe, without texture reads; a shader that issues for n cycles adds n - 1")
-                .unit("cycles")
-                .range(1, 10000),
-            sim::field<&P::registers>("128-bit registers per fragment lane, shared by the quads in flight")
-                .unit("registers")
-                .range(1, 1 << 20)};
-    }
-};
-static_assert(sim::fully_described<FragmentParams>);
 
 struct FragmentPipelineStats {
     sim::Counter quads, fragments, issue_cycles, texture_cycles, peel_rejects, kbuffer_reads;

@@ -6,6 +6,7 @@
 // and section 7 (tex_l1 parameters).
 #pragma once
 
+#include "pipeline/fragment/fragment_params.hpp"
 #include "pipeline/output/kbuffer_memory.hpp"
 #include "sim/described.hpp"
 #include "sim/stats.hpp"
@@ -14,34 +15,6 @@
 #include <vector>
 
 namespace pipeline {
-
-struct TextureParams {
-    std::uint32_t l1_bytes = 4096;
-    std::uint32_t l1_ways = 4;
-    std::uint32_t hit_latency = 40;
-    std::uint32_t cycles_per_fetch = 1;
-    std::uint32_t cycles_per_rgba32f = 4;
-
-    static constexpr std::uint32_t line_bytes = 64; ///< 4x4 RGBA8 texels, or one 2x2 block of an RGBA32F target
-
-    static constexpr auto fields() {
-        using P = TextureParams;
-        return std::tuple{sim::field<&P::l1_bytes>("Texture L1 cache of one pipe, in lines of 64 bytes; 0 = none")
-                              .unit("bytes")
-                              .range(0, 1 << 28),
-                          sim::field<&P::l1_ways>("Ways of the texture L1 cache").unit("ways").range(1, 64),
-                          sim::field<&P::hit_latency>("From lookup to filtered value, when the line is in L1")
-                              .unit("cycles")
-                              .range(1, 10000),
-                          sim::field<&P::cycles_per_fetch>("Texture unit time of one RGBA8 or depth fetch of a quad")
-                              .unit("cycles")
-                              .range(1, 64),
-                          sim::field<&P::cycles_per_rgba32f>("Texture unit time of one RGBA32F fetch of a quad")
-                              .unit("cycles")
-                              .range(1, 64)};
-    }
-};
-static_assert(sim::fully_described<TextureParams>);
 
 struct TextureCacheStats {
     sim::Counter texture_hits, texture_misses, kbuffer_hits, kbuffer_misses, kbuffer_merged, invalidations;

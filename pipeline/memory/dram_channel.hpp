@@ -8,39 +8,14 @@
 // Source: Rixner et al., "Memory Access Scheduling", 2000 (first ready, first come first served).
 #pragma once
 
-#include "sim/described.hpp"
+#include "pipeline/memory/memory_params.hpp"
 #include "sim/time.hpp"
 
 #include <cstdint>
 #include <optional>
-#include <tuple>
 #include <vector>
 
 namespace pipeline {
-
-struct DramParams {
-    std::uint32_t latency = 226;
-    std::uint32_t row_miss = 28;
-    std::uint32_t row_bytes = 2048;
-    std::uint32_t banks = 8;
-    std::uint32_t overtakes = 16;
-
-    static constexpr auto fields() {
-        using P = DramParams;
-        return std::tuple{
-            sim::field<&P::latency>("Access latency, without the row penalty and the transfer")
-                .unit("cycles")
-                .range(1, 100000),
-            sim::field<&P::row_miss>("Time to close a row and open another one").unit("cycles").range(0, 100000),
-            sim::field<&P::row_bytes>("Bytes of a row").unit("bytes").range(64, 1U << 20U),
-            sim::field<&P::banks>("Banks of a channel, one open row each").unit("banks").range(1, 1024),
-            sim::field<&P::overtakes>(
-                "Requests to the open row that may overtake an older one of the bank; 0: in order")
-                .unit("requests")
-                .at_most(65536)};
-    }
-};
-static_assert(sim::fully_described<DramParams>);
 
 class DramChannel {
   public:

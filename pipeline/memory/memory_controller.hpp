@@ -13,22 +13,6 @@
 
 namespace pipeline {
 
-struct MemoryControllerParams {
-    std::uint32_t queue = 64;
-    std::uint32_t jitter_cycles = 0;
-    DramParams dram;
-
-    static constexpr auto fields() {
-        return std::tuple{
-            sim::field<&MemoryControllerParams::queue>("Requests that wait for the data bus").range(1, 65536),
-            sim::field<&MemoryControllerParams::jitter_cycles>("Random extra latency of a read: 0 to this many")
-                .unit("cycles")
-                .at_most(100000),
-            sim::field<&MemoryControllerParams::dram>("DRAM channel")};
-    }
-};
-static_assert(sim::fully_described<MemoryControllerParams>);
-
 struct MemoryControllerStats {
     sim::Counter requests, reads, writes, row_hits, row_misses;
     std::array<sim::Counter, memory_client_count> bytes{};

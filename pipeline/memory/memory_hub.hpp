@@ -6,6 +6,7 @@
 // Not modelled: the width of the data wires; the DRAM bus behind them is narrower.
 #pragma once
 
+#include "pipeline/memory/memory_params.hpp"
 #include "pipeline/memory/messages.hpp"
 #include "sim/channel.hpp"
 #include "sim/described.hpp"
@@ -14,22 +15,6 @@
 #include <vector>
 
 namespace pipeline {
-
-struct MemoryHubParams {
-    std::uint32_t latency = 20;
-    std::uint32_t requests_per_clk = 1;
-    std::uint32_t reads_in_flight = 2048;
-
-    static constexpr auto fields() {
-        return std::tuple{
-            sim::field<&MemoryHubParams::latency>("Latency of the wires to and from a partition, each way")
-                .unit("cycles")
-                .range(1, 10000),
-            sim::field<&MemoryHubParams::requests_per_clk>("Requests that one client may send in a cycle").range(1, 64),
-            sim::field<&MemoryHubParams::reads_in_flight>("Reads on their way, of all clients").range(64, 1U << 20U)};
-    }
-};
-static_assert(sim::fully_described<MemoryHubParams>);
 
 struct MemoryHubStats {
     sim::Counter requests, responses, conflicts;

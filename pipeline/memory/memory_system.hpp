@@ -12,32 +12,6 @@
 
 namespace pipeline {
 
-struct MemoryParams {
-    std::uint32_t partitions = 4;
-    double bandwidth = 51.2;
-    std::uint32_t interleave = 256;
-    double clock_mhz = 0;
-    MemoryHubParams hub;
-    MemoryControllerParams controller;
-
-    static constexpr auto fields() {
-        return std::tuple{
-            sim::field<&MemoryParams::partitions>("Memory partitions, one DRAM channel each").range(1, 64),
-            sim::field<&MemoryParams::bandwidth>("Peak bandwidth of all partitions together")
-                .unit("GB/s")
-                .range(1e-3, 1e5),
-            sim::field<&MemoryParams::interleave>("Consecutive bytes in one partition; a power of two")
-                .unit("bytes")
-                .range(32, 1U << 20U),
-            sim::field<&MemoryParams::clock_mhz>("Clock of the partitions; 0: that of the core")
-                .unit("MHz")
-                .range(0, 1e5),
-            sim::field<&MemoryParams::hub>("Crossbar"),
-            sim::field<&MemoryParams::controller>("Partition")};
-    }
-};
-static_assert(sim::fully_described<MemoryParams>);
-
 class MemorySystem {
   public:
     /// Components are named "memory.hub" and "memory.partition0"...

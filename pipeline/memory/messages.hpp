@@ -19,11 +19,15 @@ struct MemoryRequest {
     std::uint32_t tag = 0;   ///< comes back in the response; chosen by the client
     std::uint32_t draw = 0;  ///< draw the bytes are booked to: index into Frame::draws
     MemoryClient client = MemoryClient::index;
-    bool write = false; ///< writes are posted: no response
+    bool write = false;  ///< writes are posted: no response but to whom `notify` asks for one
+    bool notify = false; ///< of a write by a ROP partition: a response when the array has taken it
 };
 
+/// Answer to a unit behind the crossbar: the data are there. Answer to a ROP partition: the array took the request, in
+/// the order in which bursts crossed the bus; the data of a read are `delay` cycles away still.
 struct MemoryResponse {
     std::uint32_t tag = 0;
+    std::uint32_t delay = 0; ///< cycles of the partition's clock
 };
 
 } // namespace pipeline

@@ -7,6 +7,7 @@
 
 #include "pipeline/fragment/messages.hpp"
 #include "pipeline/fragment/pass_context.hpp"
+#include "pipeline/output/crossbar_params.hpp"
 #include "sim/channel.hpp"
 #include "sim/described.hpp"
 #include "sim/stats.hpp"
@@ -15,23 +16,6 @@
 #include <vector>
 
 namespace pipeline {
-
-struct CrossbarParams {
-    std::uint32_t bytes_per_clk = 64;
-    std::uint32_t latency = 10;
-    std::uint32_t queue = 16;
-
-    static constexpr auto fields() {
-        using P = CrossbarParams;
-        return std::tuple{
-            sim::field<&P::bytes_per_clk>("Bytes per cycle to one ROP partition").unit("bytes").range(1, 4096),
-            sim::field<&P::latency>("Cycles from one side to the other, in both directions")
-                .unit("cycles")
-                .range(1, 1000),
-            sim::field<&P::queue>("Quads between the crossbar and one partition").unit("quads").range(1, 4096)};
-    }
-};
-static_assert(sim::fully_described<CrossbarParams>);
 
 struct CrossbarStats {
     sim::Counter quads, bytes;

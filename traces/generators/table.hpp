@@ -24,8 +24,8 @@ Generator slabs_generator();
 Generator planes_generator();
 
 /// A row of the table; `build` makes the scene (all but its name, hash and counts) from the parameters.
-template <sim::Described P, class Build>
-Generator make_generator(std::string id, std::string summary, Build build) {
+template <sim::Described P>
+Generator make_generator(std::string id, std::string summary, Scene (*build)(const P&)) {
     const std::string place = fmt::format("gen:{}", id);
     return {std::move(id), std::move(summary), sim::describe<P>(),
             [place, build](const nlohmann::ordered_json& values) { return build(read_parameters<P>(values, place)); }};

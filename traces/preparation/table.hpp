@@ -24,8 +24,8 @@ Preparation shuffle_preparation();
 std::string spec_text(const std::string& id, const nlohmann::ordered_json& parameters);
 
 /// A row of the table; `change` makes an Applied (all but its spec) of a scene and the parameters.
-template <sim::Described P, class Change>
-Preparation make_preparation(std::string id, std::string summary, Change change) {
+template <sim::Described P>
+Preparation make_preparation(std::string id, std::string summary, Applied (*change)(Scene, const P&)) {
     return {id, std::move(summary), sim::describe<P>(),
             [id, change](Scene scene, const nlohmann::ordered_json& values) {
                 const P parameters = read_parameters<P>(values, id);

@@ -16,7 +16,7 @@ namespace traces {
 
 namespace {
 
-constexpr const char* place = "workload depth-of-field";
+constexpr const char* option_owner = "workload depth-of-field";
 
 struct DepthOfFieldParams {
     double focus = 0.0;
@@ -112,8 +112,8 @@ Lens lens_of(const DepthOfFieldParams& params, const Extent& extent, const pipel
     lens.focal_length = params.focal_length > 0.0 ? params.focal_length : lens.focus / 50.0;
     lens.pixels_per_slope = static_cast<double>(view.projection[1][1]) * view.height / 2.0;
     if (!(lens.focal_length < lens.focus))
-        throw sim::InputError(fmt::format("{}: focal_length: expected less than the focus distance {}, got {}", place,
-                                          lens.focus, lens.focal_length));
+        throw sim::InputError(fmt::format("{}: focal_length: expected less than the focus distance {}, got {}",
+                                          option_owner, lens.focus, lens.focal_length));
     return lens;
 }
 
@@ -128,13 +128,14 @@ std::vector<float> bounds_of(const DepthOfFieldParams& params, const Extent& ext
         if (!(bounds[i - 1] < bounds[i]))
             throw sim::InputError(fmt::format("{}: range: expected two distances between those of the near and the far "
                                               "plane, {} and {}, the smaller one first, got {} and {}",
-                                              place, depth.distance(0.0F), depth.distance(1.0F), begin, end));
+                                              option_owner, depth.distance(0.0F), depth.distance(1.0F), begin, end));
     return bounds;
 }
 
 pipeline::Frame build(const Scene& scene, const pipeline::View& view, const DepthOfFieldParams& params) {
     if (!pipeline::EyeDepth(view.projection).perspective())
-        throw sim::InputError(fmt::format("{}: expected a perspective camera, got a parallel projection", place));
+        throw sim::InputError(
+            fmt::format("{}: expected a perspective camera, got a parallel projection", option_owner));
     const Extent extent = extent_of(scene, view);
     pipeline::Frame frame = frame_of(scene, view);
     frame.program = models::make_depth_partition(bounds_of(params, extent, view));

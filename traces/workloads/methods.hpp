@@ -23,8 +23,9 @@ Workload particles_workload();
 Workload soft_shadows_workload();
 
 /// A row of the table of workloads; `build` takes (scene, view, parameters).
-template <sim::Described P, class Build>
-Workload make_workload(std::string id, std::string summary, Build build) {
+template <sim::Described P>
+Workload make_workload(std::string id, std::string summary,
+                       pipeline::Frame (*build)(const Scene&, const pipeline::View&, const P&)) {
     const std::string place = fmt::format("workload {}", id);
     return {std::move(id),
             std::move(summary),

@@ -112,7 +112,7 @@ void add_truth(CLI::App& command, TruthCommand& options) {
 
 void add_accuracy(CLI::App& command, AccuracyCommand& options) {
     add_frame_options(command, options.frame);
-    command.add_option("--design", options.design, "Design that runs the frames (default multipass)")
+    command.add_option("--design", options.design, "Design that runs the frames, NAME?key=value (default multipass)")
         ->type_name("NAME");
     command
         .add_option("--sweep", options.sweep,
@@ -167,6 +167,24 @@ void add_geometry(CLI::App& command, GeometryCommand& options) {
     command.footer(geometry_help);
 }
 
+void add_sensitivity(CLI::App& command, SensitivityCommand& options) {
+    add_frame_options(command, options.frame);
+    command
+        .add_option("--designs", options.designs, "Designs to run, as of ropsim compare (default: those of compare)")
+        ->type_name("NAMES");
+    command
+        .add_option("--parameters", options.parameters,
+                    "Parameters to vary, or sections of them, separated by commas (default: all whose origin is "
+                    "assumed and that a unit of the runs reads)")
+        ->type_name("PATHS");
+    command.add_option("--factor", options.factor, "Numbers are divided and multiplied by it (default 2)")
+        ->type_name("N");
+    command.add_option("--out", options.directory, "Folder for sensitivity.json, tables and a page with the charts")
+        ->type_name("DIR");
+    command.add_flag("--json", options.json, "Print one JSON document on standard output, and nothing else");
+    command.footer(sensitivity_help);
+}
+
 constexpr const char* usual_fidelity = "estimate or detailed (default detailed)";
 
 void add_measure(CLI::App& command, MeasureCommand& options, const char* footer,
@@ -192,15 +210,25 @@ struct Parser {
         CLI::App* command = app.add_subcommand("compare", "Run several k-buffer designs on one frame");
         add_frame_options(*command, compare.frame);
         command
-            ->add_option("--designs", compare.designs,
-                         "Designs to run, separated by commas, or all\n(default existing,scoreboard,blender,multipass)")
+            ->add_option(
+                "--designs", compare.designs,
+                "Designs to run, separated by commas, or all; each may have settings of its own: "
+                "NAME?key=value&key=value\n(default existing with each visibility,scoreboard,blender,multipass)")
             ->type_name("NAMES");
+        command
+            ->add_option("--equal-area", compare.equal_area,
+                         "Compare at so many bytes on chip: tile caches get what is left beside all else (without a "
+                         "number: as many as the largest design has)")
+            ->type_name("BYTES")
+            ->default_str("largest")
+            ->expected(0, 1);
         add_output_options(*command, compare.output);
         command->footer(compare_help);
 
         command = app.add_subcommand("run", "Run one design and print every counter");
         add_frame_options(*command, run.frame);
-        command->add_option("--design", run.design, "Design to run (default existing)")->type_name("NAME");
+        command->add_option("--design", run.design, "Design to run, NAME?key=value&key=value (default existing)")
+            ->type_name("NAME");
         add_output_options(*command, run.output);
         command
             ->add_flag("--timeline", run.output.timeline,
@@ -227,10 +255,21 @@ struct Parser {
             "geometry: estimate or detailed (default detailed); peeling: sampled or detailed (default sampled)");
 
         command = app.add_subcommand("calibrate", "Fit numbers of GPU files to published measurements");
-        command->add_option("target", calibrate.target, "What to calibrate: geometry")->required()->type_name("WHAT");
+        command->add_option("target", calibrate.target, "What to calibrate: geometry or peeling")
+            ->required()
+            ->type_name("WHAT");
         command->add_option("--write", calibrate.directory, "Folder of GPU files to write the numbers into")
             ->type_name("DIR");
-        add_measure(*command, calibrate, calibrate_help);
+        command
+            ->add_option("--folds", calibrate.folds,
+                         "Instead: leave the rows out in N parts, fit all numbers to the others, print what becomes "
+                         "of those left out (geometry: with estimates)")
+            ->type_name("N");
+        command->add_option("--seed", calibrate.seed, "Seed of which row is in which fold (default 1)")->type_name("N");
+        command->add_option("--out", calibrate.out, "Folder for calibration.json and tables")->type_name("DIR");
+        add_measure(
+            *command, calibrate, calibrate_help,
+            "geometry: estimate or detailed (default detailed); peeling: sampled or detailed (default sampled)");
 
         command = app.add_subcommand("study", "One question: a sweep, a table and a plot");
         command->add_option("study", study.target, "Name of a study or a .toml file; none: list them")
@@ -238,6 +277,9 @@ struct Parser {
         command->add_option("--out", study.directory, "Folder for the table and a page with the plot")
             ->type_name("DIR");
         add_measure(*command, study, study_help);
+
+        add_sensitivity(*app.add_subcommand("sensitivity", "How much a comparison depends on what is assumed"),
+                        sensitivity);
 
         command = app.add_subcommand("describe", "Say what can be chosen and what the numbers mean");
         command
@@ -261,6 +303,7 @@ struct Parser {
     ValidateCommand validate;
     CalibrateCommand calibrate;
     StudyCommand study;
+    SensitivityCommand sensitivity;
     DescribeCommand describe;
     bool version = false;
 };
@@ -338,6 +381,7 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
     if (app.got_subcommand("validate")) return parser.validate;
     if (app.got_subcommand("calibrate")) return parser.calibrate;
     if (app.got_subcommand("study")) return parser.study;
+    if (app.got_subcommand("sensitivity")) return parser.sensitivity;
     if (app.got_subcommand("describe")) return parser.describe;
     throw UsageError(
         fmt::format("expected a subcommand: {}; see ropsim --help", fmt::join(subcommand_names(app), ", ")));

@@ -13,6 +13,7 @@ void geometry(const GeometryCommand& command);
 void validate(const ValidateCommand& command);
 void calibrate(const CalibrateCommand& command);
 void study(const StudyCommand& command);
+void sensitivity(const SensitivityCommand& command);
 void describe(const DescribeCommand& command);
 
 } // namespace cli

@@ -5,6 +5,7 @@
 #include "cli/console.hpp"
 #include "cli/interruption.hpp"
 #include "cli/progress_line.hpp"
+#include "reports/hazard_text.hpp"
 #include "reports/report_files.hpp"
 #include "reports/result.hpp"
 #include "reports/terminal_table.hpp"
@@ -36,6 +37,8 @@ std::string write_timeline(const reports::Timeline& timeline, const OutputOption
                        left_out == 0 ? "" : fmt::format("; its last {} slices are left out", left_out));
 }
 
+std::string blank_behind(const std::string& text) { return text.empty() ? text : text + "\n"; }
+
 } // namespace
 
 void simulate(const reports::ComparisonRequest& request, const OutputOptions& output, const Presentation& present) {
@@ -55,9 +58,9 @@ void simulate(const reports::ComparisonRequest& request, const OutputOptions& ou
 void compare(const CompareCommand& command) {
     const auto present = [](const reports::Comparison& comparison, reports::TerminalStyle style) {
         return reports::heading(comparison, style) + "\n" + reports::designs_text(comparison, style) + "\n" +
-               reports::left_out_text(comparison, style);
+               blank_behind(reports::hazards_text(comparison, style)) + reports::left_out_text(comparison, style);
     };
-    simulate(request_of(command.frame, command.designs), command.output, present);
+    simulate(request_of(command), command.output, present);
 }
 
 } // namespace cli

@@ -30,7 +30,7 @@ _ropsim() {
     local frame="--gpu --workload --k --entry --program --size --samples --camera --light --seed --threads --set --out --json --no-images --help"
     COMPREPLY=()
     if ((COMP_CWORD == 1)); then
-        _ropsim_words "compare run truth accuracy geometry validate calibrate study describe --help --version"
+        _ropsim_words "compare run truth accuracy geometry validate calibrate study sensitivity describe --help --version"
         return
     fi
     case $before in
@@ -51,12 +51,17 @@ _ropsim() {
         --fidelity) _ropsim_words "estimate detailed"; return ;;
         --export) _ropsim_files glb; return ;;
         --out | --write) mapfile -t COMPREPLY < <(compgen -d -- "$word"); compopt -o filenames; return ;;
+        --parameters) _ropsim_list "$(_ropsim_names params)"; return ;;
+        --factor | --equal-area) return ;;
         --k | --seed | --threads | --layers | --light | --rays | --sweep | --averaged) return ;;
     esac
     local measure="--gpus --fidelity --threads --json --help"
     case $command in
-        compare) [[ $word == -* ]] && _ropsim_words "--designs $frame" || _ropsim_files glb gltf ;;
+        compare) [[ $word == -* ]] && _ropsim_words "--designs --equal-area $frame" || _ropsim_files glb gltf ;;
         run) [[ $word == -* ]] && _ropsim_words "--design $frame" || _ropsim_files glb gltf ;;
+        sensitivity)
+            [[ $word == -* ]] && _ropsim_words "--designs --parameters --factor ${frame/ --no-images/}" ||
+                _ropsim_files glb gltf ;;
         truth)
             [[ $word == -* ]] && _ropsim_words "--workload --k --size --camera --set --layers --light --rays --seed --threads --check --out --json --no-images --no-cache --help" ||
                 _ropsim_files glb gltf ;;
@@ -66,7 +71,7 @@ _ropsim() {
             [[ $word == -* ]] && _ropsim_words "--gpu --prepare --submission --reads --fidelity --seed --set --export --out --json --help" ||
                 _ropsim_files glb gltf ;;
         validate) [[ $word == -* ]] && _ropsim_words "--leave-one-out --out $measure" || _ropsim_words "geometry peeling" ;;
-        calibrate) [[ $word == -* ]] && _ropsim_words "--write $measure" || _ropsim_words geometry ;;
+        calibrate) [[ $word == -* ]] && _ropsim_words "--write --folds --seed --out $measure" || _ropsim_words "geometry peeling" ;;
         study) [[ $word == -* ]] && _ropsim_words "--out $measure" || _ropsim_words "$(_ropsim_names studies)" ;;
         describe)
             if [[ $word == -* ]]; then

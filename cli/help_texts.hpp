@@ -4,7 +4,7 @@
 namespace cli {
 
 inline constexpr const char* general_help = R"(Examples:
-  ropsim compare scene.glb --out report        four designs; then open report/report.html
+  ropsim compare scene.glb --out report        the usual designs; then open report/report.html
   ropsim compare gen:blob --k 8 --entry z      a scene made by rule
   ropsim run scene.glb --design blender        every counter of one design
   ropsim truth scene.glb --check --out truth   the frame by ray tracing, beside the rasterized one
@@ -12,17 +12,20 @@ inline constexpr const char* general_help = R"(Examples:
   ropsim geometry scene.glb --gpu g70          what limits the geometry feed, and what helps
   ropsim validate geometry                     the model beside published measurements
   ropsim study batching                        one question, a table and a plot
+  ropsim sensitivity scene.glb                 which assumptions a comparison depends on
   ropsim describe designs                      what can be chosen, and what it means)";
 
 inline constexpr const char* compare_help = R"(Examples:
   ropsim compare scene.glb
   ropsim compare scene.glb --designs existing,scoreboard --out report
   ropsim compare scene.glb --designs all --gpu g71 --k 8 --size 1024x768 --no-images --out report
+  ropsim compare scene.glb --designs 'existing?visibility=rop_cache,blender?rop.queue=128,blender'
+  ropsim compare scene.glb --designs interlock,scoreboard,blender --equal-area 300000
   ropsim compare scene.glb --set scoreboard.granularity=tile8 --set rop.queue=32 --json > result.json)";
 
 inline constexpr const char* run_help = R"(Examples:
   ropsim run scene.glb --design existing
-  ropsim run scene.glb --design scoreboard --set scoreboard.side_buffer=128
+  ropsim run scene.glb --design 'scoreboard?side_buffer=128'
   ropsim run scene.glb --design scoreboard --timeline --out report
   ropsim run "gen:stack?n=64" --design blender --size 64x64 --json)";
 
@@ -45,7 +48,9 @@ inline constexpr const char* validate_help = R"(Examples:
 
 inline constexpr const char* calibrate_help = R"(Examples:
   ropsim calibrate geometry                      what the measurements say, beside what the files say
-  ropsim calibrate geometry --gpus g70 --write models/gpus)";
+  ropsim calibrate geometry --gpus g70 --write models/gpus
+  ropsim calibrate geometry --folds 5            how well rows are predicted that had no part in a fit
+  ropsim calibrate peeling --fidelity detailed --write models/gpus)";
 
 inline constexpr const char* study_help = R"(Examples:
   ropsim study                                   the studies there are
@@ -53,6 +58,11 @@ inline constexpr const char* study_help = R"(Examples:
   ropsim study tolerable_artefacts --out artefacts
   ropsim study batching --gpus g70 --fidelity estimate
   ropsim study my_study.toml)";
+
+inline constexpr const char* sensitivity_help = R"(Examples:
+  ropsim sensitivity scene.glb --size 256x256 --out sensitivity
+  ropsim sensitivity scene.glb --parameters rop.queue,memory --factor 4
+  ropsim sensitivity gen:discs --designs 'interlock,blender,blender?rop.queue=128' --json)";
 
 inline constexpr const char* describe_help = R"(Examples:
   ropsim describe                      an overview

@@ -39,8 +39,10 @@ std::string write_tables(const std::string& directory, const std::string& docume
     return fmt::format("Written to {}: {}\n", directory, names);
 }
 
-void expect_geometry(const std::string& command, const std::string& target) {
-    if (target != "geometry") throw sim::InputError(fmt::format("{}: expected geometry, got '{}'", command, target));
+void check_peeling_gpus(const std::string& gpus, const std::string& measured) {
+    for (const std::string& name : list_of(gpus))
+        if (name != measured)
+            throw sim::InputError(fmt::format("--gpus: '{}' was not measured; expected {}", name, measured));
 }
 
 } // namespace cli

@@ -31,7 +31,7 @@ std::string write_tables(const std::string& directory, const std::string& docume
                          const nlohmann::ordered_json& document, const std::vector<reports::Table>& tables,
                          const std::string& page);
 
-/// The only target that calibrate knows so far.
-void expect_geometry(const std::string& command, const std::string& target);
+/// Throws sim::InputError for a GPU of --gpus other than the one that depth peeling was measured on.
+void check_peeling_gpus(const std::string& gpus, const std::string& measured);
 
 } // namespace cli

@@ -97,8 +97,15 @@ std::optional<reports::SquareLight> parse_light(const std::string& text) {
 }
 
 std::vector<std::string> parse_designs(std::string_view text) {
-    if (text.empty()) return {"existing", "scoreboard", "blender", "multipass"};
-    if (text != "all") return split(text, "--designs");
+    // What the protected designs are compared with differs most in when a store becomes visible.
+    if (text.empty())
+        return {"existing?visibility=rop_cache",
+                "existing?visibility=writeback",
+                "existing?visibility=never_until_flush",
+                "scoreboard",
+                "blender",
+                "multipass"};
+    if (text != "all") return reports::split_variants(text, "--designs");
     std::vector<std::string> names;
     for (const models::DesignInfo& design : models::designs()) names.emplace_back(design.id);
     return names;
@@ -131,6 +138,19 @@ reports::ComparisonRequest request_of(const FrameOptions& options, const std::st
     return request;
 }
 
+reports::ComparisonRequest request_of(const CompareCommand& command) {
+    reports::ComparisonRequest request = request_of(command.frame, command.designs);
+    if (command.equal_area.empty()) return request;
+    constexpr std::uint64_t most = std::uint64_t{1} << 40U;
+    request.equal_area =
+        command.equal_area == "largest" ? std::optional<std::uint64_t>(0) : parse<std::uint64_t>(command.equal_area);
+    if (!request.equal_area || *request.equal_area > most || command.equal_area == "0")
+        throw sim::InputError(fmt::format("--equal-area: expected bytes from 1 to 2^40, or nothing for as many as the "
+                                          "largest design has; got '{}'",
+                                          command.equal_area));
+    return request;
+}
+
 reports::TruthRequest request_of(const TruthCommand& command) {
     constexpr std::uint32_t most_rays = 1'000'000;
     reports::TruthRequest request;
@@ -152,6 +172,19 @@ reports::TruthRequest request_of(const TruthCommand& command) {
     if (!command.threads.empty()) request.threads = parse_threads(command.threads);
     request.check = command.check;
     request.use_cache = !command.no_cache;
+    return request;
+}
+
+reports::SensitivityRequest request_of(const SensitivityCommand& command) {
+    constexpr double most = 1000;
+    reports::SensitivityRequest request;
+    request.comparison = request_of(command.frame, command.designs);
+    if (!command.parameters.empty()) request.parameters = split(command.parameters, "--parameters");
+    const auto factor = parse<double>(command.factor);
+    if (!factor || !(*factor > 1) || *factor > most)
+        throw sim::InputError(
+            fmt::format("--factor: expected a number above 1, at most {}, got '{}'", most, command.factor));
+    request.factor = *factor;
     return request;
 }
 
@@ -197,6 +230,15 @@ reports::PeelingFidelity peeling_fidelity_of(const std::string& text) {
 }
 
 unsigned threads_of(const std::string& text) { return text.empty() ? reports::core_count() : parse_threads(text); }
+
+unsigned folds_of(const std::string& text) {
+    constexpr std::uint32_t most_folds = 1000;
+    const std::uint32_t folds = parse_count("--folds", text, most_folds);
+    if (folds < 2) throw sim::InputError(fmt::format("--folds: expected 2 to {}, got {}", most_folds, folds));
+    return folds;
+}
+
+std::uint64_t seed_of(const std::string& text) { return parse_seed(text); }
 
 std::vector<std::string> list_of(const std::string& text) {
     return text.empty() ? std::vector<std::string>{} : split(text, "--gpus");

@@ -5,6 +5,7 @@
 #include "reports/comparison.hpp"
 #include "reports/geometry/advice.hpp"
 #include "reports/peeling/validation.hpp"
+#include "reports/sensitivity/sensitivity.hpp"
 #include "reports/truth/truth_run.hpp"
 
 #include <optional>
@@ -41,7 +42,8 @@ struct OutputOptions {
 struct CompareCommand {
     FrameOptions frame;
     OutputOptions output;
-    std::string designs; ///< or "all"; empty: the usual ones. Of those two, the ones that can run the program
+    std::string equal_area; ///< bytes, or "largest"; empty: every design as large as it is
+    std::string designs; ///< variants, or "all"; empty: the usual ones. Of those two, the ones that can run the program
 };
 
 struct RunCommand {
@@ -99,6 +101,15 @@ struct AccuracyCommand {
     bool no_cache = false;
 };
 
+struct SensitivityCommand {
+    FrameOptions frame;
+    std::string designs;    ///< as of CompareCommand
+    std::string parameters; ///< separated by commas; empty: all that are assumed
+    std::string factor = "2";
+    std::string directory; ///< of --out
+    bool json = false;
+};
+
 /// validate, calibrate and study: what to do it with, and on which GPUs.
 struct MeasureCommand {
     std::string target;
@@ -112,7 +123,12 @@ struct ValidateCommand : MeasureCommand {
     ValidateCommand() { fidelity.clear(); } ///< the usual one depends on the target
     bool leave_one_out = false;
 };
-struct CalibrateCommand : MeasureCommand {};
+struct CalibrateCommand : MeasureCommand {
+    CalibrateCommand() { fidelity.clear(); } ///< the usual one depends on the target
+    std::string folds;                       ///< empty: write down what the plan's rows determine
+    std::string seed = "1";
+    std::string out; ///< of --out
+};
 struct StudyCommand : MeasureCommand {};
 
 /// A text asked for with --help or --version.
@@ -120,15 +136,20 @@ struct ShowText {
     std::string text;
 };
 
-using Command = std::variant<CompareCommand, RunCommand, TruthCommand, AccuracyCommand, GeometryCommand,
-                             ValidateCommand, CalibrateCommand, StudyCommand, DescribeCommand, ShowText>;
+using Command =
+    std::variant<CompareCommand, RunCommand, TruthCommand, AccuracyCommand, GeometryCommand, SensitivityCommand,
+                 ValidateCommand, CalibrateCommand, StudyCommand, DescribeCommand, ShowText>;
 
 /// The request that the options stand for; for `designs` see CompareCommand. Throws sim::InputError when a number or
 /// size is none.
 reports::ComparisonRequest request_of(const FrameOptions& options, const std::string& designs);
 
+/// The same with what only comparisons have.
+reports::ComparisonRequest request_of(const CompareCommand& command);
+
 reports::TruthRequest request_of(const TruthCommand& command);
 reports::AccuracyRequest request_of(const AccuracyCommand& command);
+reports::SensitivityRequest request_of(const SensitivityCommand& command);
 
 /// The same for geometry feed.
 reports::GeometryRequest request_of(const GeometryCommand& command);
@@ -138,6 +159,9 @@ reports::Fidelity fidelity_of(const std::string& text);
 /// "sampled", which "" stands for, or "detailed".
 reports::PeelingFidelity peeling_fidelity_of(const std::string& text);
 unsigned threads_of(const std::string& text);
+/// Of --folds: 2 or more; of --seed.
+unsigned folds_of(const std::string& text);
+std::uint64_t seed_of(const std::string& text);
 std::vector<std::string> list_of(const std::string& text);
 
 } // namespace cli

@@ -34,16 +34,11 @@ void validate_geometry(const ValidateCommand& command) {
     print(text + written);
 }
 
-void check_peeling(const ValidateCommand& command, const std::string& gpu) {
-    for (const std::string& name : list_of(command.gpus))
-        if (name != gpu) throw sim::InputError(fmt::format("--gpus: '{}' was not measured; expected {}", name, gpu));
-    if (command.leave_one_out)
-        throw sim::InputError("--leave-one-out: no other row could determine what peeling calibrates");
-}
-
 void validate_peeling(const ValidateCommand& command) {
     const reports::PublishedPeeling published = reports::load_published_peeling();
-    check_peeling(command, published.gpu);
+    check_peeling_gpus(command.gpus, published.gpu);
+    if (command.leave_one_out)
+        throw sim::InputError("--leave-one-out: no other row could determine what peeling calibrates");
     reports::PeelingOptions options;
     options.fidelity = peeling_fidelity_of(command.fidelity);
     Measuring measuring("detailed", command.threads);
@@ -56,7 +51,7 @@ void validate_peeling(const ValidateCommand& command) {
     std::string written;
     if (!command.directory.empty())
         written = "\n" + write_tables(command.directory, "validation.json", document,
-                                      {reports::peeling_table(validation)}, reports::peeling_page(validation));
+                                      reports::peeling_tables(validation), reports::peeling_page(validation));
     print(command.json ? reports::result_text(document)
                        : reports::peeling_text(validation, terminal_style()) + written);
 }

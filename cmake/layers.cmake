@@ -23,10 +23,15 @@ function(ropsim_layer name)
     set_property(GLOBAL APPEND PROPERTY ROPSIM_LAYERS ropsim_${name})
 endfunction()
 
+# ropsim_unity(TARGET [BATCH]): compiles BATCH files (12) of a target together, where the build asks for it.
 # Most of a file's compile time are the headers it includes, so several files together take little longer than one.
 function(ropsim_unity target)
+    set(batch 12)
+    if(ARGC GREATER 1)
+        set(batch ${ARGV1})
+    endif()
     if(ROPSIM_UNITY)
-        set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 12)
+        set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${batch})
     endif()
 endfunction()
 

@@ -127,9 +127,10 @@ struct Frame {
 
 /// Declared cost of a fragment shader for one quad.
 struct ShaderCost {
-    std::uint32_t alu = 0;       ///< instructions, each issued once per quad
-    std::uint32_t textures = 0;  ///< filtered texture reads
-    std::uint32_t registers = 4; ///< 128-bit registers per fragment; they limit the quads in flight
+    std::uint32_t alu = 0;         ///< instructions, each issued once per quad, up to the read of its pixel's state
+    std::uint32_t textures = 0;    ///< filtered texture reads
+    std::uint32_t registers = 4;   ///< 128-bit registers per fragment; they limit the quads in flight
+    std::uint32_t behind_read = 0; ///< instructions that depend on the state read
 };
 
 } // namespace pipeline

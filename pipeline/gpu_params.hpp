@@ -2,6 +2,7 @@
 #pragma once
 
 #include "pipeline/fragment/fragment_params.hpp"
+#include "pipeline/fragment/fragment_scheduler_params.hpp"
 #include "pipeline/fragment/reorder_buffer.hpp"
 #include "pipeline/geometry/geometry_front.hpp"
 #include "pipeline/memory/memory_params.hpp"
@@ -29,6 +30,7 @@ struct GpuParams {
     GeometryParams geometry;
     RasterizerParams raster;
     EarlyDepthParams early_depth;
+    FragmentSchedulerParams scheduler;
     FragmentParams fragment;
     TextureParams texture;
     ReorderBufferParams reorder_buffer;
@@ -43,11 +45,12 @@ struct GpuParams {
                           sim::field<&P::geometry>("From draw call to triangle"),
                           sim::field<&P::raster>("Rasterizer"),
                           sim::field<&P::early_depth>("Early depth test"),
+                          sim::field<&P::scheduler>("Fragment scheduler"),
                           sim::field<&P::fragment>("Fragment pipelines"),
                           sim::field<&P::texture>("Texture unit and L1 cache of a fragment pipeline"),
                           sim::field<&P::reorder_buffer>("Reorder buffer"),
-                          sim::field<&P::crossbar>("Crossbar to the ROP partitions"),
-                          sim::field<&P::rop>("ROP partitions"),
+                          sim::field<&P::crossbar>("Crossbar to the ROP groups"),
+                          sim::field<&P::rop>("ROP groups"),
                           sim::field<&P::memory>("Memory")};
     }
 

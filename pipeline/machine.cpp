@@ -5,6 +5,7 @@
 #include "pipeline/functional/screen_stream.hpp"
 #include "pipeline/functional/shader.hpp"
 #include "pipeline/machine_units.hpp"
+#include "pipeline/on_chip_area.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -64,119 +65,46 @@ void Machine::build() {
                               shader_site && plan_.shader.visibility != Visibility::rop_cache);
     if (keeps_lists()) units.lists.emplace(pass.layout);
     units.history.emplace(units.kbuffer ? pass.layout : SurfaceLayout{0, 0, 1});
-    const auto partitions = gpu_.memory.partitions;
+    const std::uint32_t groups = gpu_.rop.groups();
     // A quad keeps its slot from dispatch to commit: through the reorder buffer, the crossbar and the ROP's queue.
     if (shader_site)
-        units.payloads.emplace(gpu_.reorder_quads() + partitions * (gpu_.crossbar.queue + gpu_.rop.queue),
+        units.payloads.emplace(gpu_.reorder_quads() +
+                                   groups * (gpu_.crossbar.queue + gpu_.crossbar.latency + gpu_.rop.queue),
                                pass.program->floats_per_pixel());
     QuadPayloads* payloads = units.payloads ? &*units.payloads : nullptr;
 
     auto context = [&units](std::string name) { return units.simulation.context(std::move(name), units.core); };
     units.rasterizer.emplace(context("rasterizer"), gpu_.raster, pass);
     if (frame_->needs.early_depth || rejects_early() || options_.build_everything)
-        units.early_depth.emplace(context("early_depth_test"), gpu_.early_depth, pass,
-                                  rejects_early() ? partitions : 0);
+        units.early_depth.emplace(context("early_depth_test"), gpu_.early_depth, pass, rejects_early() ? groups : 0);
     if (locks()) {
-        units.locks.emplace(context("lock_table"), plan_.shader, pass, gpu_.fragment.pipes, partitions,
+        units.locks.emplace(context("lock_table"), plan_.shader, pass, gpu_.fragment.pipes, groups,
                             gpu_.fragment.pipes * gpu_.fragment.quads_in_flight);
         if (plan_.shader.lock_area != LockArea::pixel) plan_.scheduling.tickets = plan_.shader.lock_area;
     }
-    units.scheduler.emplace(context("fragment_scheduler"), gpu_.fragment.pipes, partitions, pass, plan_.scheduling,
-                            plan_.shader.flush, payloads, options_.quads_done);
+    units.scheduler.emplace(context("fragment_scheduler"), gpu_.scheduler, gpu_.fragment.pipes, groups, pass,
+                            plan_.scheduling, plan_.shader.flush, payloads, options_.quads_done);
     for (std::uint32_t pipe = 0; pipe < gpu_.fragment.pipes; ++pipe)
         units.pipes.emplace_back(context(fmt::format("fragment_pipe{}", pipe)), static_cast<std::uint16_t>(pipe),
-                                 gpu_.fragment, gpu_.texture, pass, partitions, shader_site ? &plan_.shader : nullptr,
+                                 gpu_.fragment, gpu_.texture, pass, groups, shader_site ? &plan_.shader : nullptr,
                                  payloads);
     units.reorder_buffer.emplace(context("reorder_buffer"), gpu_.reorder_buffer, gpu_.fragment.pipes,
                                  gpu_.reorder_quads(), plan_.retirement);
-    units.crossbar.emplace(context("crossbar"), gpu_.crossbar, pass, partitions);
-    const RopSurfaces surfaces{&units.fixed, units.kbuffer ? &*units.kbuffer : nullptr, &*units.history, payloads,
-                               units.lists ? &*units.lists : nullptr};
-    for (std::uint32_t rop = 0; rop < partitions; ++rop)
-        units.rops.emplace_back(context(fmt::format("rop{}", rop)), gpu_.rop, pass, plan_, surfaces,
-                                RopShape{gpu_.fragment.pipes, most_tiles(), frame_->draws.size(),
-                                         uses_depth() || options_.build_everything,
-                                         uses_colour() || options_.build_everything, kbuffer_tiles()});
+    units.crossbar.emplace(context("crossbar"), gpu_.crossbar, pass, groups);
+    const RopSurfaces surfaces{&units.fixed, units.kbuffer ? &*units.kbuffer : nullptr, &*units.history,
+                               payloads,     units.lists ? &*units.lists : nullptr,     &units.kbuffer_clear};
+    for (std::uint32_t rop = 0; rop < groups; ++rop)
+        units.rops.emplace_back(
+            context(fmt::format("rop{}", rop)), gpu_.rop, pass, plan_, surfaces,
+            RopShape{gpu_.fragment.pipes, frame_->draws.size(), uses_depth() || options_.build_everything,
+                     uses_colour() || options_.build_everything, gpu_.memory.partitions, gpu_.memory.interleave, rop});
+    for (Rop& rop : units.rops)
+        if (options_.keep_accesses) rop.keep_accesses();
 }
 
-// Full-screen passes draw onto the picture or onto surfaces that are no larger than the k-buffer's.
-std::uint32_t Machine::most_tiles() const {
-    return std::max(layout_of(frame_->view).tiles(), layout_of(frame_->view_of_kbuffer()).tiles());
+bool Machine::pass_reads_textures() const {
+    return frame_->needs.textures || peels() || keeps_lists() || frame_->screen_draw;
 }
-
-// Tile memory holds every tile of the partition; partitions own tiles in turn, row by row.
-std::uint32_t Machine::kbuffer_tiles() const {
-    if (!units_->kbuffer && !units_->lists) return 0;
-    if (!frame_->needs.kbuffer || !plan_.shader.tile_memory) return gpu_.rop.cache_tiles;
-    const SurfaceLayout& layout = units_->pass.layout;
-    return (layout.tiles_x() / layout.partitions + 1) * layout.tiles_y();
-}
-
-void Machine::link() {
-    Units& units = *units_;
-    const std::uint32_t width = gpu_.raster.quads_per_clk;
-    const bool guarded = plan_.scheduling.guard != nullptr;
-    const sim::Cycle lookup = 1 + (guarded ? plan_.scheduling.lookup_latency : 0);
-    const std::uint32_t accepted = guarded ? plan_.scheduling.lookups : gpu_.fragment.pipes;
-    textures_linked_ = pass_reads_textures() || options_.build_everything;
-    units.front.attach(units.memory);
-    sim::connect(units.front.triangles_out(), units.rasterizer->triangles_in, {1, gpu_.raster.tiles_per_clk, 16});
-    // Inputs are as wide as the wider side, so that the unit, not the wire, sets the rate.
-    const sim::ChannelConfig to_scheduler{lookup, std::max(width, accepted),
-                                          static_cast<std::uint32_t>(8 * (lookup + 1) * width)};
-    if (units.early_depth) {
-        sim::connect(units.rasterizer->quads_out, units.early_depth->quads_in, {1, width, 4 * width});
-        sim::ChannelConfig delayed = to_scheduler;
-        delayed.latency += gpu_.early_depth.latency;
-        delayed.capacity = static_cast<std::uint32_t>(delayed.width * (delayed.latency + 8));
-        sim::connect(units.early_depth->quads_out, units.scheduler->quads_in, delayed);
-    } else {
-        sim::connect(units.rasterizer->quads_out, units.scheduler->quads_in, to_scheduler);
-    }
-    const std::uint32_t pipes = gpu_.fragment.pipes;
-    const std::uint32_t order_width = std::max(pipes, gpu_.reorder_buffer.retire_per_clk);
-    const bool in_order = plan_.retirement == Retirement::in_order;
-    sim::connect(units.scheduler->order_out, units.reorder_buffer->order_in,
-                 {1, order_width, in_order ? gpu_.reorder_quads() : 4 * order_width});
-    const sim::Cycle cross = gpu_.crossbar.latency;
-    for (std::uint32_t pipe = 0; pipe < pipes; ++pipe) {
-        FragmentPipeline& unit = units.pipes[pipe];
-        sim::connect(units.scheduler->pipes_out[pipe], unit.quads_in, {1, 1, 4});
-        sim::connect(unit.done_out, units.reorder_buffer->completions_in[pipe], {1, 1, 4});
-        if (textures_linked_) units.memory.attach(unit.textures_out, unit.textures_in);
-        if (units.locks) {
-            const sim::Cycle way = plan_.shader.lock_latency;
-            sim::connect(unit.locks_out, units.locks->requests_in[pipe], {way, 1, static_cast<std::uint32_t>(way + 4)});
-            sim::connect(units.locks->grants_out[pipe], unit.locks_in,
-                         {way, plan_.shader.grants_per_clk,
-                          static_cast<std::uint32_t>(plan_.shader.grants_per_clk * (way + 4))});
-        }
-        for (std::size_t rop = 0; rop < unit.reads_out.size(); ++rop) {
-            sim::connect(unit.reads_out[rop], units.rops[rop].reads_in[pipe],
-                         {cross, 1, static_cast<std::uint32_t>(cross + 4)});
-            sim::connect(units.rops[rop].reads_out[pipe], unit.reads_in[rop],
-                         {cross, 4, static_cast<std::uint32_t>(4 * (cross + 2))});
-            if (!unit.invalidations_in.empty())
-                sim::connect(units.rops[rop].invalidations_out[pipe], unit.invalidations_in[rop], {1, 16, 64});
-        }
-    }
-    const std::uint32_t retire = gpu_.reorder_buffer.retire_per_clk;
-    sim::connect(units.reorder_buffer->quads_out, units.crossbar->quads_in, {1, retire, 4 * retire});
-    for (std::uint32_t rop = 0; rop < gpu_.memory.partitions; ++rop) {
-        Rop& unit = units.rops[rop];
-        sim::connect(units.crossbar->partitions_out[rop], unit.quads_in,
-                     {cross, 1, gpu_.crossbar.queue + static_cast<std::uint32_t>(cross)});
-        units.memory.attach_rop(rop, unit.memory_out, unit.memory_in);
-        if (!units.scheduler->commits_in.empty())
-            sim::connect(unit.commits_out, units.scheduler->commits_in[rop], {1, 2, 16});
-        if (units.locks) sim::connect(unit.releases_out, units.locks->releases_in[rop], {1, 2, 16});
-        if (rejects_early())
-            sim::connect(unit.bounds_out, units.early_depth->bounds_in[rop],
-                         {cross, 1, static_cast<std::uint32_t>(cross + 4)});
-    }
-}
-
-bool Machine::pass_reads_textures() const { return frame_->needs.textures || peels() || frame_->screen_draw; }
 
 bool Machine::peels() const { return frame_->needs.kbuffer && plan_.site == UpdateSite::passes; }
 
@@ -192,11 +120,9 @@ bool Machine::rejects_early() const {
            plan_.blender.early_reject != EarlyReject::none;
 }
 
-bool Machine::uses_depth() const { return frame_->needs.depth || peels(); }
+bool Machine::uses_depth() const { return pipeline::uses_depth(*frame_, plan_); }
 
-bool Machine::uses_colour() const {
-    return frame_->needs.colour_surface || (peels() && frame_->program->needs_colour());
-}
+bool Machine::uses_colour() const { return pipeline::uses_colour(*frame_, plan_); }
 
 std::uint64_t Machine::total_quads(const Frame& frame, std::span<const FragmentStream> streams,
                                    const KBufferDesign& design) {
@@ -225,9 +151,18 @@ void Machine::set_costs(const Needs& needs) {
                                   frame_->resources->geometries[call.geometry], needs);
         registers = std::max(registers, costs[draw].registers);
     }
-    // A shader that reads and writes the k-buffer keeps all render targets in registers.
-    if (units_->pass.end == FragmentEnd::kbuffer_store) registers += frame_->program->targets();
+    // A shader that reads and writes the k-buffer keeps all render targets in registers, and runs the program behind
+    // the read: its scalar operations four wide, for the four fragments of the quad side by side.
+    if (units_->pass.end == FragmentEnd::kbuffer_store) {
+        registers += frame_->program->targets();
+        for (ShaderCost& cost : costs) cost.behind_read = (frame_->program->cost().operations + 3) / 4;
+    }
     if (units_->pass.screen != nullptr) registers = units_->pass.screen->registers;
+    // Where fragments get their memory from a counter, the shader waits for it: to the point of coherence and back.
+    units_->pass.atomic_latency = units_->pass.end == FragmentEnd::kbuffer_list && plan_.lists.counter_per_clk != 0
+                                      ? 2 * static_cast<std::uint32_t>(gpu_.crossbar.latency) +
+                                            gpu_.rop.read_request_latency + gpu_.rop.read_return_latency
+                                      : 0;
     for (FragmentPipeline& pipe : units_->pipes) pipe.begin_pass(registers);
 }
 
@@ -242,9 +177,9 @@ void Machine::end() {
     pass.counters = sim::to_json(sim::difference(units_->stats(), units_->stats_at_pass_start));
 }
 
-void Machine::stream_surface(std::uint64_t read_bytes, std::uint64_t write_bytes) {
-    const auto partitions = static_cast<std::uint64_t>(units_->rops.size());
-    for (Rop& rop : units_->rops) rop.stream(read_bytes / partitions, write_bytes / partitions);
+void Machine::stream_surface(std::uint64_t read_bytes, std::uint64_t write_bytes, bool resolve) {
+    const auto groups = static_cast<std::uint64_t>(units_->rops.size());
+    for (Rop& rop : units_->rops) rop.stream(read_bytes / groups, write_bytes / groups, resolve);
     units_->simulation.run(options_.stop);
 }
 
@@ -268,23 +203,49 @@ void Machine::clear(const Pass& pass) {
     const std::size_t places = frame_->view.places();
     const std::uint64_t pixels = frame_->view.samples_drawn(),
                         kbuffer_pixels = frame_->view_of_kbuffer().samples_drawn();
+    const SurfaceLayout fixed = layout_of(frame_->view), kbuffer = layout_of(frame_->view_of_kbuffer());
+    FixedSurfaces& surfaces = units_->fixed;
     std::uint64_t bytes = 0;
     for (const std::string& surface : pass.writes) {
         if (surface == "depth") {
-            units_->fixed.depth.assign(places, farthest_depth(frame_->depth_format));
-            bytes += pixels * depth_bytes(frame_->depth_format);
+            surfaces.depth.assign(places, farthest_depth(frame_->depth_format));
+            bytes += clear_surface(surfaces.depth_clear, fixed, pixels, depth_bytes(frame_->depth_format));
         }
         if (surface == "colour") {
-            units_->fixed.colour.assign(places, through_format(frame_->colour_format, frame_->background));
-            bytes += pixels * colour_bytes(frame_->colour_format);
+            surfaces.colour.assign(places, through_format(frame_->colour_format, frame_->background));
+            bytes += clear_surface(surfaces.colour_clear, fixed, pixels, colour_bytes(frame_->colour_format));
         }
-        // Peeling clears its layers one by one instead, lists their heads.
-        if (surface == "kbuffer" && units_->lists) bytes += kbuffer_pixels * plan_.lists.head_bytes;
-        if (surface == "kbuffer" && units_->kbuffer && !plan_.shader.tile_memory)
-            bytes += kbuffer_pixels * frame_->program->bytes_per_pixel();
+        // Peeling clears its layers one by one instead. Tile memory is cleared on chip, and stores whole sectors.
+        if (surface != "kbuffer") continue;
+        if (plan_.shader.tile_memory)
+            units_->kbuffer_clear.set(kbuffer);
+        else if (units_->lists || units_->kbuffer)
+            bytes += clear_surface(units_->kbuffer_clear, kbuffer, kbuffer_pixels, kbuffer_bytes());
     }
-    if (!gpu_.rop.fast_clear && bytes != 0) stream_surface(0, bytes);
+    if (bytes != 0) stream_surface(0, bytes);
     end();
+}
+
+std::uint32_t Machine::kbuffer_bytes() const {
+    return units_->lists ? plan_.lists.head_bytes : frame_->program->bytes_per_pixel();
+}
+
+bool Machine::clears_fast(const SurfaceLayout& layout) const {
+    return gpu_.rop.fast_clear && layout.blocks() <= gpu_.rop.clear_sectors;
+}
+
+std::uint64_t Machine::clear_surface(ClearBits& bits, const SurfaceLayout& layout, std::uint64_t pixels,
+                                     std::uint32_t pixel_bytes) {
+    bits.reset();
+    if (!clears_fast(layout)) return pixels * pixel_bytes;
+    bits.set(layout);
+    return 0;
+}
+
+// Readers on the memory side do not see the table.
+void Machine::resolve_cleared(ClearBits& bits, std::uint32_t pixel_bytes) {
+    if (bits.left() != 0) stream_surface(0, bits.left() * 4 * pixel_bytes, true);
+    bits.reset();
 }
 
 void Machine::draw(const Pass& pass, const FragmentStream& stream) {
@@ -318,6 +279,8 @@ void Machine::draw(const Pass& pass, const FragmentStream& stream) {
     context.read_only_depth = pass.depth.test ? &fixed.depth : nullptr;
     context.end = plan_.site == UpdateSite::blender ? FragmentEnd::kbuffer_blend : FragmentEnd::kbuffer_store;
     begin(pass.name);
+    if (context.end == FragmentEnd::kbuffer_store && !plan_.shader.tile_memory)
+        resolve_cleared(units_->kbuffer_clear, kbuffer_bytes());
     run_draw(stream, frame_->needs_of(pass));
     end();
 }
@@ -329,13 +292,21 @@ void Machine::resolve() {
     const auto passes = with_drained(*frame_, {kbuffer, colour, depth}, [this](const FinishedSurfaces& surfaces) {
         return frame_->resolve->screen_passes(*frame_, surfaces);
     });
-    for (const ScreenPass& pass : passes) screen(pass);
+    FixedSurfaces& fixed = units_->fixed;
+    ClearBits& heads_or_entries = units_->kbuffer_clear;
+    if (!passes.empty() && heads_or_entries.left() + fixed.depth_clear.left() + fixed.colour_clear.left() != 0) {
+        begin("resolve of cleared sectors");
+        if (frame_->program != nullptr) resolve_cleared(heads_or_entries, kbuffer_bytes());
+        resolve_cleared(fixed.depth_clear, depth_bytes(frame_->depth_format));
+        resolve_cleared(fixed.colour_clear, colour_bytes(frame_->colour_format));
+        end();
+    }
+    for (const ScreenPass& pass : passes) screen(pass, *frame_->screen_draw);
 }
 
-void Machine::screen(const ScreenPass& pass) {
+void Machine::screen(const ScreenPass& pass, std::uint32_t triangle) {
     PassContext& context = units_->pass;
-    const FragmentStream stream = screen_stream(pass.width, pass.height, *frame_->screen_draw);
-    CHECK(layout_of(pass.width, pass.height).tiles() <= most_tiles());
+    const FragmentStream stream = screen_stream(pass.width, pass.height, triangle);
     units_->drawn = std::exchange(units_->fixed, {});
     units_->fixed.winner.assign(std::size_t{pass.width} * pass.height, ~QuadId{0});
     context.layout = layout_of(pass.width, pass.height);

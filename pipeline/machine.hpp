@@ -7,6 +7,7 @@
 
 #include "pipeline/frame.hpp"
 #include "pipeline/gpu_params.hpp"
+#include "pipeline/output/hazard_ledger.hpp"
 #include "pipeline/output/kbuffer_design.hpp"
 #include "pipeline/reference.hpp"
 #include "pipeline/run_result.hpp"
@@ -19,6 +20,7 @@
 
 namespace pipeline {
 
+class ClearBits;
 struct PeeledLayer;
 
 struct MachineOptions {
@@ -28,6 +30,7 @@ struct MachineOptions {
     std::atomic<std::uint64_t>* quads_done = nullptr; ///< progress
     sim::Observer* observer = nullptr;
     bool build_everything = false; ///< also units that nothing needs; results do not change
+    bool keep_accesses = false;    ///< when each fragment read and stored its pixel: see accesses()
 };
 
 class Machine {
@@ -40,6 +43,10 @@ class Machine {
 
     /// Runs the frame once. `reference` is run_reference() of the same frame and streams.
     RunResult run(const ReferenceImage& reference);
+
+    /// Every store of the run with the time of the read it was computed from, group by group in the order of the
+    /// stores; of a machine that keeps them.
+    std::vector<HazardLedger::Access> accesses() const;
 
     /// Quads that a run dispatches over all its passes, for progress.
     static std::uint64_t total_quads(const Frame& frame, std::span<const FragmentStream> streams,
@@ -55,14 +62,15 @@ class Machine {
     void clear(const Pass& pass);
     void draw(const Pass& pass, const FragmentStream& stream);
     void resolve();
-    void screen(const ScreenPass& pass);
+    /// @param triangle the draw whose triangle covers the screen, or stands for one that does
+    void screen(const ScreenPass& pass, std::uint32_t triangle);
     void draw_layers(const Pass& pass, const FragmentStream& stream);
     void clear_layers();
     void keep_both_ends(std::size_t pixel, const std::vector<PeeledLayer>& near_layers,
                         const std::vector<PeeledLayer>& far_layers, const FragmentStream& stream);
     void keep_entry(std::size_t pixel, std::uint32_t entry, QuadId id, const FragmentStream& stream);
     void draw_lists(const Pass& pass, const FragmentStream& stream);
-    std::uint64_t run_lists(const FragmentStream& stream);
+    void run_lists(const FragmentStream& stream);
     bool overflowed(std::size_t place, std::uint32_t fragments) const;
     static std::uint32_t geometry_passes(const KBufferPlan& plan, const ModifyProgram& program);
     bool pass_reads_textures() const;
@@ -70,15 +78,19 @@ class Machine {
     bool keeps_lists() const;
     bool locks() const;
     bool rejects_early() const;
-    std::uint32_t kbuffer_tiles() const; ///< of one partition's cache
     void run_draw(const FragmentStream& stream, const Needs& needs);
-    void stream_surface(std::uint64_t read_bytes, std::uint64_t write_bytes);
+    void stream_surface(std::uint64_t read_bytes, std::uint64_t write_bytes, bool resolve = false);
+    bool clears_fast(const SurfaceLayout& layout) const;
+    /// Marks the surface cleared where the table of fast clears holds it; returns the bytes to be written instead.
+    std::uint64_t clear_surface(ClearBits& bits, const SurfaceLayout& layout, std::uint64_t pixels,
+                                std::uint32_t pixel_bytes);
+    void resolve_cleared(ClearBits& bits, std::uint32_t pixel_bytes);
+    std::uint32_t kbuffer_bytes() const; ///< per pixel: entries, or heads of lists
     void set_costs(const Needs& needs);
     SurfaceLayout layout_of(std::uint32_t width, std::uint32_t height, std::uint32_t samples = 1) const {
-        return {width, height, gpu_.memory.partitions, samples};
+        return {width, height, gpu_.rop.groups(), samples};
     }
     SurfaceLayout layout_of(const View& view) const { return layout_of(view.width, view.height, view.samples); }
-    std::uint32_t most_tiles() const; ///< of a surface that a pass draws onto
     std::vector<float> kbuffer_image() const;
     std::vector<float> depth_surface() const;
     void list_units(RunResult& result) const;

@@ -1,5 +1,6 @@
 // k-buffer passes of designs that do not modify pixels in place: several geometry passes with fixed-function tests, and
 // lists of fragments that a later pass puts into the entries.
+#include "pipeline/list_sort.hpp"
 #include "pipeline/machine_units.hpp"
 
 #include <algorithm>
@@ -46,8 +47,10 @@ void Machine::draw_layers(const Pass& pass, const FragmentStream& stream) {
             units_->fixed.far_depth.assign(pixels, 0);
             units_->fixed.far_winner.assign(pixels, ~QuadId{0});
         }
-        if (!gpu_.rop.fast_clear)
-            stream_surface(0, drawn * (context.depth_bytes + (context.colour_write ? context.colour_bytes : 0)));
+        std::uint64_t clear = clear_surface(units_->fixed.depth_clear, context.layout, drawn, context.depth_bytes);
+        if (context.colour_write)
+            clear += clear_surface(units_->fixed.colour_clear, context.layout, drawn, context.colour_bytes);
+        if (clear != 0) stream_surface(0, clear);
         if (plan_.passes.capture == PassCapture::range) {
             context.range = program.range(i);
         } else if (i > 0) {
@@ -64,6 +67,7 @@ void Machine::draw_layers(const Pass& pass, const FragmentStream& stream) {
             near_layers = {{units_->fixed.depth, units_->fixed.winner}};
         }
         const bool read_again = i + 1 < passes && plan_.passes.capture != PassCapture::range;
+        if (read_again) resolve_cleared(units_->fixed.depth_clear, context.depth_bytes);
         if (read_again) stream_surface(drawn * context.depth_bytes, drawn * context.depth_bytes);
         end();
     }
@@ -108,8 +112,8 @@ void Machine::keep_entry(std::size_t pixel, std::uint32_t entry, QuadId id, cons
                            std::size_t{entry} * program.floats_per_entry());
 }
 
-// All fragments are kept in order of arrival, which is that of the primitives; then one pass over the screen runs the
-// program on each pixel's list.
+// All fragments are kept in order of arrival, which is that of the primitives; then one pass over the screen sorts each
+// pixel's list and runs the program on it. Where nothing was drawn there is no list, and no entry but cleared ones.
 void Machine::draw_lists(const Pass& pass, const FragmentStream& stream) {
     PassContext& context = units_->pass;
     const ListsSite& site = plan_.lists;
@@ -119,34 +123,38 @@ void Machine::draw_lists(const Pass& pass, const FragmentStream& stream) {
     for (std::uint32_t i = 0; i < site.passes; ++i) {
         begin(site.passes == 1 ? pass.name : fmt::format("{} pass {}", pass.name, i));
         context.first_kept = i * site.per_pixel;
-        if (i > 0) stream_surface(0, pixels * site.head_bytes);
+        if (const std::uint64_t clear =
+                i > 0 ? clear_surface(units_->kbuffer_clear, context.layout, pixels, site.head_bytes) : 0;
+            clear != 0)
+            stream_surface(0, clear);
         run_draw(stream, frame_->needs_of(pass));
         end();
     }
-    begin(pass.name + " sort");
     clear_layers();
-    const std::uint64_t kept = run_lists(stream);
-    stream_surface(kept * site.read_bytes + pixels * site.head_bytes, pixels * frame_->program->bytes_per_pixel());
-    end();
+    run_lists(stream);
+    if (stream.triangles.empty()) return;
+    if (units_->kbuffer_clear.left() != 0) {
+        begin(pass.name + " resolve of cleared heads");
+        resolve_cleared(units_->kbuffer_clear, site.head_bytes);
+        end();
+    }
+    const ScreenPass sort = list_sort_pass(pass.name + " sort", site, *frame_->program, *units_->lists, stream);
+    screen(sort, stream.triangles.front().draw);
 }
 
-// Returns how many fragments the lists hold.
-std::uint64_t Machine::run_lists(const FragmentStream& stream) {
+void Machine::run_lists(const FragmentStream& stream) {
     const ModifyProgram& program = *frame_->program;
     const SurfaceLayout& layout = units_->pass.layout;
-    std::uint64_t kept = 0;
     std::array<float, largest_entry> entry;
     for (std::uint32_t y = 0; y < layout.rows(); ++y)
         for (std::uint32_t x = 0; x < layout.width; ++x) {
             const std::uint32_t lane = y % 2 * 2 + x % 2;
             float* pixel = layers_.data() + (std::size_t{y} * layout.width + x) * program.floats_per_pixel();
-            for (const QuadId quad : units_->lists->fragments(layout.block_of(x, y), lane)) {
-                program.make_entry(stream.fragment(quad, lane), entry.data());
+            for (const FragmentLists::Node& node : units_->lists->fragments(layout.block_of(x, y), lane)) {
+                program.make_entry(stream.fragment(node.quad, lane), entry.data());
                 program.insert(pixel, entry.data());
-                ++kept;
             }
         }
-    return kept;
 }
 
 // Whether more fragments came to a pixel than the design can hold; what it shows there is not meant to be right.

@@ -3,6 +3,7 @@
 #include "pipeline/image_difference.hpp"
 #include "pipeline/machine_units.hpp"
 #include "pipeline/memory/unit_report.hpp"
+#include "pipeline/on_chip_area.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -195,17 +196,19 @@ std::vector<float> Machine::colour_surface() const {
     return image;
 }
 
+std::vector<HazardLedger::Access> Machine::accesses() const {
+    std::vector<HazardLedger::Access> all;
+    for (const Rop& rop : units_->rops)
+        all.insert(all.end(), rop.ledger().accesses().begin(), rop.ledger().accesses().end());
+    return all;
+}
+
 void Machine::collect_hazards(RunResult& result) const {
     const Units& units = *units_;
     std::uint64_t staleness = 0;
     for (const Rop& rop : units.rops) {
         const HazardLedger& ledger = rop.ledger();
-        const HazardCounts& counts = ledger.counts();
-        result.hazards.h1 += counts.h1;
-        result.hazards.h2 += counts.h2;
-        result.hazards.h3 += counts.h3;
-        result.hazards.h4 += counts.h4;
-        result.hazards.pixels += counts.pixels;
+        result.hazards += ledger.counts();
         staleness += ledger.staleness_sum();
         result.max_staleness = std::max(result.max_staleness, ledger.staleness_max());
         const auto& distances = ledger.distances();
@@ -278,8 +281,7 @@ void Machine::collect_counters(RunResult& result) const {
                 link_report(stats.memory.bytes[client], result.fragments);
     result.bytes["crossbar"] = link_report(stats.crossbar.bytes, result.fragments);
 
-    if (frame_->program != nullptr)
-        result.area = design_->area(*frame_->program, frame_->view_of_kbuffer(), gpu_.reorder_quads());
+    result.area = area_json(on_chip_area(gpu_, *frame_, *design_));
     for (std::uint32_t draw = 0; draw < frame_->draws.size(); ++draw) collect_draw(result, draw);
 }
 

@@ -38,7 +38,7 @@ struct MachineStats {
                           sim::field<&S::locks>("Lock table"),
                           sim::field<&S::reorder_buffer>("Reorder buffer"),
                           sim::field<&S::crossbar>("Crossbar"),
-                          sim::field<&S::rop>("ROP partitions"),
+                          sim::field<&S::rop>("ROP groups"),
                           sim::field<&S::memory>("Memory partitions")};
     }
 };
@@ -59,6 +59,7 @@ struct Machine::Units {
     std::optional<StoreHistory> history;
     std::optional<QuadPayloads> payloads;
     std::optional<FragmentLists> lists;
+    ClearBits kbuffer_clear; ///< of the k-buffer, or of the heads of lists
     FixedSurfaces fixed;
     FixedSurfaces drawn; ///< result of the earlier passes, while a k-buffer pass peels its layers
 

@@ -71,7 +71,7 @@ struct RunResult {
     nlohmann::ordered_json stalls; ///< stage -> activity -> fraction of elapsed time
     nlohmann::ordered_json caches; ///< cache -> { accesses, hits, misses, hit_rate }
     nlohmann::ordered_json bytes;  ///< link -> bytes, and bytes per fragment
-    nlohmann::ordered_json area;   ///< area proxies: bits of state, comparators, ALU lanes
+    nlohmann::ordered_json area;   ///< as area_json() says
     std::vector<PassResult> passes;
     std::vector<DrawResult> draws;
 

@@ -133,16 +133,20 @@ GeometryDrawStats stats_of(const Frame& frame, const Draw& draw, const PathCount
     return stats;
 }
 
-/// Time of the banks of memory: a line keeps its bank for its transfer and, where it opens a row, for that. Served in
-/// order, as if no request overtook another.
+/// Time of the banks of memory: a line keeps its bank for its transfer and, where it opens a row, for that; a row stays
+/// open for tRAS at least, and a channel opens one each tRRD, four in tFAW. Served in order, as if no request overtook
+/// another.
 double bank_cycles(const GpuParams& gpu, const PathCounts& counts, double factor) {
     const MemoryParams& memory = gpu.memory;
-    const double banks = static_cast<double>(memory.partitions) * memory.controller.dram.banks;
-    const double transfer =
-        gpu.geometry.vertex_fetch.cache.line / (memory.bandwidth * 1e3 / gpu.clock.core_mhz / memory.partitions);
-    return factor / banks *
-           (static_cast<double>(counts.rows) * memory.controller.dram.row_miss +
-            static_cast<double>(counts.lines) * transfer);
+    const DramParams& dram = memory.controller.dram;
+    const double line_ns = gpu.geometry.vertex_fetch.cache.line / (memory.bandwidth / memory.partitions);
+    const auto rows = static_cast<double>(counts.rows);
+    const double banks_ns =
+        std::max(rows * (dram.rp_ns + dram.rcd_read_ns) + static_cast<double>(counts.lines) * line_ns,
+                 rows * (dram.rp_ns + dram.ras_ns)) /
+        dram.banks;
+    const double channel_ns = rows * std::max(dram.rrd_ns, dram.faw_ns / 4);
+    return factor * std::max(banks_ns, channel_ns) / memory.partitions * 1e-3 * gpu.clock.core_mhz;
 }
 
 /// What a draw takes when nothing else is drawn: its largest demand.
@@ -154,7 +158,8 @@ double busy_cycles(const VertexPathDemand& demand) {
 /// From the first draw call to the first triangle with nothing in the way.
 double fill_cycles(const GpuParams& gpu) {
     const auto& controller = gpu.memory.controller;
-    const double read = 2.0 * gpu.memory.hub.latency + controller.dram.latency + controller.dram.row_miss;
+    const double device = (controller.dram.rcd_read_ns + controller.dram.cl_ns) * 1e-3 * gpu.clock.core_mhz;
+    const double read = 2.0 * gpu.memory.hub.latency + controller.request_latency + controller.return_latency + device;
     constexpr double stages = 12;
     return gpu.geometry.command_processor.draw_gpu_cycles + 2 * read + gpu.geometry.vertex_fetch.hit_latency +
            gpu.geometry.vertex_shader.cycles_per_vertex + gpu.geometry.triangle_setup.cycles_per_triangle + stages;

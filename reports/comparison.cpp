@@ -1,20 +1,17 @@
 #include "reports/comparison.hpp"
 
-#include "models/gpu_library.hpp"
 #include "models/kbuffers/design_support.hpp"
 #include "pipeline/functional/composite.hpp"
-#include "pipeline/functional/frame_streams.hpp"
 #include "pipeline/functional/parallel.hpp"
 #include "pipeline/functional/sample_pattern.hpp"
 #include "pipeline/machine.hpp"
+#include "reports/compared_designs.hpp"
 #include "reports/numbers.hpp"
 #include "reports/stopwatch.hpp"
 #include "traces/camera.hpp"
-#include "traces/submission.hpp"
 #include "traces/workloads.hpp"
 
 #include <fmt/format.h>
-#include <set>
 #include <sys/resource.h>
 #include <thread>
 #include <unistd.h>
@@ -22,23 +19,6 @@
 namespace reports {
 
 namespace {
-
-// GPU and designs read one configuration, so that a misspelt key of either is found.
-void read_hardware(const ComparisonRequest& request, ComparisonInput& input) {
-    sim::Config config = models::load_gpu(request.gpu);
-    for (const std::string& setting : request.gpu_settings) config.set(setting);
-    config.read("", input.gpu_params);
-    input.gpu.parameters = config.effective();
-    std::set<std::string> seen;
-    for (const std::string& design : request.designs) {
-        if (!seen.insert(design).second) throw sim::InputError(fmt::format("--designs: '{}' is named twice", design));
-        input.designs.push_back(models::make_design(design, config));
-    }
-    input.gpu.name = request.gpu;
-    input.gpu.origins = config.origins();
-    models::check_design_sections(config);
-    config.expect_all_used();
-}
 
 void read_scene(const ComparisonRequest& request, ComparisonInput& input) {
     traces::WorkloadOptions options;
@@ -48,26 +28,6 @@ void read_scene(const ComparisonRequest& request, ComparisonInput& input) {
     view.samples = request.samples;
     input.frame = std::make_shared<const pipeline::Frame>(traces::build_frame(scene, view, request.workload, options));
     input.scene = facts_of(scene, request.camera);
-}
-
-void leave_out(ComparisonInput& input, std::size_t design, const std::string& reason) {
-    pipeline::Frame frame = *input.frame;
-    frame.left_out.push_back({fmt::format("design {}", input.designs[design]->id()),
-                              fmt::format("it cannot run the program {}: {}", frame.program->id(), reason)});
-    input.frame = std::make_shared<const pipeline::Frame>(std::move(frame));
-    input.designs.erase(input.designs.begin() + static_cast<std::ptrdiff_t>(design));
-}
-
-void check_designs(ComparisonInput& input, bool only_able) {
-    if (!input.frame->program) return;
-    for (std::size_t i = input.designs.size(); i-- > 0;) {
-        const std::string reason = input.designs[i]->refuses(*input.frame->program);
-        if (reason.empty()) continue;
-        if (!only_able || input.designs.size() == 1)
-            throw sim::InputError(fmt::format("--designs: '{}' cannot run the program {}: {}", input.designs[i]->id(),
-                                              input.frame->program->id(), reason));
-        leave_out(input, i, reason);
-    }
 }
 
 // A frame that cannot fit would be ended by the system without a word.
@@ -91,31 +51,6 @@ void check_memory(const ComparisonInput& input, const ComparisonRequest& request
                         bytes_text(needed), bytes_text(here)));
 }
 
-std::vector<pipeline::FragmentStream> shade(const pipeline::Frame& frame, unsigned threads,
-                                            const Supervision& supervision) {
-    pipeline::FrontEndOptions options;
-    options.threads = threads;
-    options.stop = supervision.stop;
-    if (supervision.progress != nullptr)
-        options.progress = [progress = supervision.progress](double share) { progress->share = share; };
-    return pipeline::rasterize_frame(frame, options);
-}
-
-// Designs with equal wishes share a frame.
-std::shared_ptr<const SubmittedFrame> submit(const ComparisonInput& input, const pipeline::KBufferDesign& design,
-                                             const Supervision& supervision) {
-    const pipeline::SubmissionPlan plan = design.submission();
-    if (!plan.changes() || !input.frame->program) return nullptr;
-    for (const auto& earlier : input.submitted)
-        if (earlier && earlier->plan == plan) return earlier;
-    auto result = std::make_shared<SubmittedFrame>();
-    result->plan = plan;
-    result->frame = traces::submitted(*input.frame, plan);
-    result->streams = shade(result->frame, input.threads, supervision);
-    result->reference = pipeline::run_reference(result->frame, result->streams, 1, input.threads);
-    return result;
-}
-
 std::vector<float> picture_of(const pipeline::Frame& frame, const std::vector<float>& kbuffer,
                               const std::vector<float>& colour, const std::vector<float>& depth) {
     if (!kbuffer.empty()) return pipeline::composite(frame, {kbuffer, colour, depth});
@@ -135,11 +70,10 @@ void keep_first_sample(FramePixels& pixels, const pipeline::Frame& frame) {
 }
 
 // Where no pixel is wrong, the picture is that of the reference, if it is of the same submission.
-FramePixels run_pixels(const ComparisonInput& input, const std::vector<float>& reference, std::size_t number,
+FramePixels run_pixels(const ComparisonInput& input, const std::vector<float>& reference, const ComparedDesign& design,
                        pipeline::RunResult& run) {
     FramePixels pixels{std::move(run.kbuffer), {}, std::move(run.colour), std::move(run.depth)};
-    const bool submitted_anew = number < input.submitted.size() && input.submitted[number] != nullptr;
-    pixels.composite = run.wrong_pixels == 0 && !submitted_anew
+    pixels.composite = run.wrong_pixels == 0 && design.submitted == nullptr
                            ? reference
                            : picture_of(*input.frame, pixels.kbuffer, pixels.colour, pixels.depth);
     keep_first_sample(pixels, *input.frame);
@@ -155,29 +89,11 @@ std::vector<std::uint32_t> most_of_samples(const pipeline::View& view, const std
     return most;
 }
 
-pipeline::RunResult run_design(const ComparisonInput& input, std::size_t number, const Supervision& supervision) {
-    const pipeline::KBufferDesign& design = *input.designs[number];
-    const SubmittedFrame* submitted = number < input.submitted.size() ? input.submitted[number].get() : nullptr;
-    pipeline::MachineOptions options;
-    options.seed = input.seed;
-    options.stop = supervision.stop;
-    options.observer = supervision.observer;
-    if (supervision.progress != nullptr) options.quads_done = &supervision.progress->quads_done;
-    const Stopwatch watch;
-    pipeline::Machine machine(input.gpu_params, submitted != nullptr ? submitted->frame : *input.frame,
-                              submitted != nullptr ? submitted->streams : input.streams, design, options);
-    pipeline::RunResult result = machine.run(submitted != nullptr ? submitted->reference : input.reference);
-    result.sort_milliseconds =
-        design.submission().sort_ns_per_triangle * static_cast<double>(input.scene.triangles_drawn) / 1e6;
-    result.host_seconds = watch.seconds();
-    return result;
-}
-
 // Before the first run starts: quads of all runs, so that the time left can be estimated.
 std::uint64_t all_quads(const ComparisonInput& input) {
     std::uint64_t sum = 0;
-    for (const auto& design : input.designs)
-        sum += pipeline::Machine::total_quads(*input.frame, input.streams, *design);
+    for (const ComparedDesign& row : input.designs)
+        sum += pipeline::Machine::total_quads(*input.frame, input.streams, *row.design);
     return sum;
 }
 
@@ -188,6 +104,13 @@ std::uint64_t peak_memory() {
 }
 
 } // namespace
+
+std::size_t Comparison::base_run() const {
+    for (std::size_t i = 0; i < runs.size(); ++i)
+        if (variants.at(i).design == "existing" && design_parameters.at(i).value("visibility", "") == "writeback")
+            return i;
+    return 0;
+}
 
 SceneFacts facts_of(const traces::Scene& scene, const std::string& camera) {
     return {scene.name,
@@ -216,16 +139,19 @@ ComparisonInput prepare(const ComparisonRequest& request, const Supervision& sup
     input.seed = request.seed;
     input.threads = request.threads == 0 ? core_count() : request.threads;
     enter(supervision, Progress::Phase::reading);
-    read_hardware(request, input);
+    Hardware hardware = read_hardware(request);
+    input.gpu = std::move(hardware.gpu);
+    input.designs = std::move(hardware.designs);
     read_scene(request, input);
     check_designs(input, request.only_able_designs);
+    if (request.equal_area) fit_to_area(input, *request.equal_area);
     check_memory(input, request);
     enter(supervision, Progress::Phase::shading);
     const Stopwatch front_end;
     input.streams = shade(*input.frame, input.threads, supervision);
     enter(supervision, Progress::Phase::reference);
     input.reference = pipeline::run_reference(*input.frame, input.streams, 1, input.threads);
-    for (const auto& design : input.designs) input.submitted.push_back(submit(input, *design, supervision));
+    submit(input, input.designs, supervision);
     input.front_end_seconds = front_end.seconds();
     input.seconds = watch.seconds();
     return input;
@@ -237,9 +163,10 @@ Comparison compare(ComparisonInput input, const Supervision& supervision) {
     enter(supervision, Progress::Phase::simulating);
     Comparison comparison;
     if (supervision.progress != nullptr) supervision.progress->quads_total = all_quads(input);
-    for (const auto& design : input.designs) {
-        comparison.design_parameters.push_back(design->parameters());
-        comparison.design_support.push_back(models::support_of(*design));
+    for (const ComparedDesign& row : input.designs) {
+        comparison.variants.push_back(facts_of(row));
+        comparison.design_parameters.push_back(row.design->parameters());
+        comparison.design_support.push_back(models::support_of(*row.design));
     }
     comparison.runs.resize(input.designs.size());
     comparison.pixels.resize(input.designs.size());
@@ -248,8 +175,8 @@ Comparison compare(ComparisonInput input, const Supervision& supervision) {
         reference.picture.empty() ? picture_of(*input.frame, reference.kbuffer, reference.colour, reference.depth)
                                   : std::move(reference.picture);
     pipeline::parallel_for(input.threads, input.designs.size(), [&](std::size_t i) {
-        comparison.runs[i] = run_design(input, i, supervision);
-        comparison.pixels[i] = run_pixels(input, comparison.reference.composite, i, comparison.runs[i]);
+        comparison.runs[i] = run_design(input, input.designs[i], supervision);
+        comparison.pixels[i] = run_pixels(input, comparison.reference.composite, input.designs[i], comparison.runs[i]);
     });
     comparison.reference.kbuffer = std::move(reference.kbuffer);
     comparison.reference.colour = std::move(reference.colour);
@@ -258,6 +185,7 @@ Comparison compare(ComparisonInput input, const Supervision& supervision) {
     comparison.depth_complexity = most_of_samples(input.frame->view_of_kbuffer(), input.reference.depth_complexity);
     comparison.scene = std::move(input.scene);
     comparison.gpu = std::move(input.gpu);
+    comparison.equal_area = std::move(input.equal_area);
     comparison.frame = std::move(input.frame);
     comparison.seed = input.seed;
     comparison.host = {input.seconds + watch.seconds(), input.front_end_seconds, peak_memory(), input.threads};

@@ -5,11 +5,13 @@
 #include "pipeline/gpu_params.hpp"
 #include "pipeline/reference.hpp"
 #include "reports/comparison_result.hpp"
+#include "reports/design_variant.hpp"
 #include "sim/observer.hpp"
 #include "traces/scene.hpp"
 
 #include <atomic>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,8 +27,10 @@ struct ComparisonRequest {
     std::vector<std::string> workload_settings; ///< "key=value"
     std::string gpu = "neutral";
     std::vector<std::string> gpu_settings; ///< "section.key=value"; also parameters of designs
-    std::vector<std::string> designs;      ///< at least one, no duplicates
+    std::vector<std::string> designs;      ///< at least one, each a DesignVariant, no duplicates
     bool only_able_designs = false;        ///< leave out those that cannot run the frame's program, instead of ending
+    /// Every design has so many bytes on chip, its tile caches what is left beside all else; 0: as many as the largest.
+    std::optional<std::uint64_t> equal_area;
     std::uint64_t seed = 1;
     unsigned threads = 0; ///< 0 = all cores
 };
@@ -58,17 +62,25 @@ struct SubmittedFrame {
     pipeline::ReferenceImage reference;
 };
 
-/// All that the runs share. Immutable while they run.
+/// A row of a comparison: a design and the GPU it runs on.
+struct ComparedDesign {
+    DesignVariant variant;
+    std::string name; ///< of row, column and folder
+    std::shared_ptr<const pipeline::KBufferDesign> design;
+    pipeline::GpuParams gpu;
+    nlohmann::ordered_json gpu_changes = nlohmann::ordered_json::object(); ///< what differs from the comparison's GPU
+    std::shared_ptr<const SubmittedFrame> submitted = nullptr; ///< where the design takes the frame as it is
+};
+
+/// The runs, and all that they share. Immutable while they run.
 struct ComparisonInput {
     SceneFacts scene;
     GpuFacts gpu;
-    pipeline::GpuParams gpu_params;
     std::shared_ptr<const pipeline::Frame> frame;
     std::vector<pipeline::FragmentStream> streams; ///< one per draw pass
     pipeline::ReferenceImage reference;
-    std::vector<std::unique_ptr<pipeline::KBufferDesign>> designs;
-    /// By design; null, or not there, where it takes the frame as it is.
-    std::vector<std::shared_ptr<const SubmittedFrame>> submitted;
+    std::vector<ComparedDesign> designs;
+    std::optional<EqualArea> equal_area;
     std::uint64_t seed = 1;
     unsigned threads = 1; ///< at least 1
     double seconds = 0;   ///< host time that making all this took

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -50,6 +51,25 @@ struct HostCost {
     unsigned threads = 1;
 };
 
+/// What a run was of.
+struct VariantFacts {
+    std::string design;                                                    ///< id
+    std::string text;                                                      ///< "existing?visibility=rop_cache"
+    std::string label;                                                     ///< the same, shorter
+    nlohmann::ordered_json gpu_changes = nlohmann::ordered_json::object(); ///< parameters that differ from `gpu`
+};
+
+/// A comparison of designs with the same on-chip bytes.
+struct EqualArea {
+    std::uint64_t bytes = 0;
+    struct Unfit {
+        std::string name;
+        VariantFacts variant;
+        std::uint64_t needed = 0; ///< bytes with the smallest tile caches
+    };
+    std::vector<Unfit> does_not_fit; ///< designs that did not run
+};
+
 struct Comparison {
     SceneFacts scene;
     GpuFacts gpu;
@@ -59,14 +79,19 @@ struct Comparison {
     /// Fragments drawn onto each pixel of the k-buffer in one geometry pass; of several samples the most.
     std::vector<std::uint32_t> depth_complexity;
     std::vector<pipeline::RunResult> runs;                 ///< in the order in which the designs were asked for
+    std::vector<VariantFacts> variants;                    ///< of each run
     std::vector<nlohmann::ordered_json> design_parameters; ///< of each run
     std::vector<nlohmann::ordered_json> design_support;    ///< what it can be used for, of each run
     std::vector<FramePixels> pixels;                       ///< of each run
+    std::optional<EqualArea> equal_area;
     HostCost host;
 
     std::uint32_t width() const { return frame->view.width; }
     std::uint32_t height() const { return frame->view.height; }
     std::uint32_t samples() const { return frame->view.samples; }
+    /// The run that others are compared with: unprotected hardware whose stores become visible when they are written
+    /// back; where there is none, the first.
+    std::size_t base_run() const;
     /// The k-buffer, hazards and fragments per pixel are those of another view than the picture.
     bool has_light_view() const { return frame->kbuffer_view.has_value(); }
 };

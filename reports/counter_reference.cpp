@@ -1,8 +1,8 @@
 #include "reports/counter_reference.hpp"
 
+#include "pipeline/fragment/fragment_pipeline.hpp"
 #include "pipeline/fragment/fragment_scheduler.hpp"
 #include "pipeline/fragment/lock_table.hpp"
-#include "pipeline/fragment/fragment_pipeline.hpp"
 #include "pipeline/gpu_params.hpp"
 #include "pipeline/memory/memory_system.hpp"
 #include "pipeline/output/crossbar.hpp"
@@ -36,8 +36,8 @@ std::vector<StageReference> make_reference() {
             stage<FragmentPipelineStats>("fragment_pipeline", "Fragment pipelines with their texture L1 caches"),
             stage<LockTableStats>("lock_table", "Lock table of the shaders' critical sections"),
             stage<ReorderBufferStats>("reorder_buffer", "Reorder buffer"),
-            stage<CrossbarStats>("crossbar", "Crossbar to the ROP partitions"),
-            stage<RopStats>("rop", "ROP partitions with their tile caches"),
+            stage<CrossbarStats>("crossbar", "Crossbar to the ROP groups"),
+            stage<RopStats>("rop", "ROP groups with their tile caches"),
             stage<MemoryHubStats>("memory_hub", "Crossbar to the memory partitions"),
             stage<MemoryControllerStats>("memory_partition", "Memory partitions")};
 }

@@ -86,7 +86,7 @@ std::string counters_text(const pipeline::RunResult& run, TerminalStyle style) {
             stage_text(stage.key(), stage.value(), run.stalls.value(stage.key(), ordered_json::object()), style) + "\n";
     text += named_numbers("caches", run.caches, style);
     text += named_numbers("bytes over links", run.bytes, style);
-    text += named_numbers("area proxies", run.area, style);
+    text += named_numbers("on chip", run.area, style);
     return text;
 }
 

@@ -2,10 +2,12 @@
 
 #include "reports/counter_rows.hpp"
 #include "reports/flatten.hpp"
+#include "reports/hazard_text.hpp"
 #include "reports/run_numbers.hpp"
 #include "sim/described.hpp"
 
 #include <algorithm>
+#include <fmt/format.h>
 #include <unordered_map>
 
 namespace reports {
@@ -45,55 +47,59 @@ class WideTable {
     std::vector<std::vector<std::string>> rows_;
 };
 
-// Numbers that every design has; the columns of caches and bytes follow them.
-constexpr std::array<const char*, 21> design_columns{"design",
-                                                     "cycles [core cycles]",
-                                                     "core clock [MHz]",
-                                                     "time [ms]",
-                                                     "frames per second [1/s]",
-                                                     "fragments",
-                                                     "h1 [fragments]",
-                                                     "h2 [fragments]",
-                                                     "h3 [fragments]",
-                                                     "h4 [fragments]",
-                                                     "hazards [fragments]",
-                                                     "hazard pixels [pixels]",
-                                                     "hazards per million [1e-6]",
-                                                     "mean staleness [versions]",
-                                                     "max staleness [versions]",
-                                                     "wrong pixels [pixels]",
-                                                     "tied pixels [pixels]",
-                                                     "overflow pixels [pixels]",
-                                                     "unexplained pixels [pixels]",
-                                                     "lost fragments [fragments]",
-                                                     "lost updates [fragments]"};
-
-std::vector<std::string> design_cells(const RunResult& run) {
-    const pipeline::HazardCounts& hazards = run.hazards;
-    return {run.design,
-            text(run.cycles),
-            text(run.core_mhz),
-            text(milliseconds(run)),
-            text(frames_per_second(run)),
-            text(run.fragments),
-            text(hazards.h1),
-            text(hazards.h2),
-            text(hazards.h3),
-            text(hazards.h4),
-            text(hazards.total()),
-            text(hazards.pixels),
-            text(hazards_per_million(run)),
-            text(run.mean_staleness),
-            text(run.max_staleness),
-            text(run.wrong_pixels),
-            text(run.tied_pixels),
-            text(run.overflow_pixels),
-            text(run.unexplained_pixels),
-            text(run.lost_fragments),
-            text(run.lost_updates)};
+// Numbers that every design has; the columns of caches, bytes and area follow them.
+const std::vector<std::string>& design_columns() {
+    static const std::vector<std::string> columns = [] {
+        std::vector<std::string> list{"design",           "variant",   "cycles [core cycles]",
+                                      "core clock [MHz]", "time [ms]", "frames per second [1/s]",
+                                      "fragments"};
+        for (const auto name : hazard_class_names) list.push_back(fmt::format("{} [fragments]", name));
+        list.emplace_back("hazards [fragments]");
+        for (const auto name : hazard_kind_names) list.push_back(fmt::format("{} [fragments]", name));
+        for_each_hazard_cell({}, [&list](const std::string& name, std::uint64_t) {
+            list.push_back(fmt::format("{} [fragments]", name));
+        });
+        list.insert(list.end(),
+                    {"hazard pixels [pixels]", "hazards per million [1e-6]", "concurrency per million [1e-6]",
+                     "incoherence per million [1e-6]", "mean staleness [versions]", "max staleness [versions]",
+                     "wrong pixels [pixels]", "tied pixels [pixels]", "overflow pixels [pixels]",
+                     "unexplained pixels [pixels]", "lost fragments [fragments]", "lost updates [fragments]"});
+        return list;
+    }();
+    return columns;
 }
 
-std::string hazard_name(pipeline::HazardClass kind) { return "h" + std::to_string(static_cast<int>(kind) + 1); }
+std::vector<std::string> hazard_cells(const RunResult& run) {
+    const pipeline::HazardCounts& hazards = run.hazards;
+    std::vector<std::string> cells;
+    for (std::size_t cause = 0; cause < pipeline::hazard_classes; ++cause)
+        cells.push_back(text(hazards.of(static_cast<pipeline::HazardClass>(cause))));
+    cells.push_back(text(hazards.total()));
+    for (const auto kind : {pipeline::HazardKind::concurrency, pipeline::HazardKind::incoherence})
+        cells.push_back(text(hazards.of(kind)));
+    for_each_hazard_cell(hazards, [&cells](const std::string&, std::uint64_t count) { cells.push_back(text(count)); });
+    cells.insert(cells.end(), {text(hazards.pixels), text(hazards_per_million(run)),
+                               text(hazards_per_million(run, pipeline::HazardKind::concurrency)),
+                               text(hazards_per_million(run, pipeline::HazardKind::incoherence)),
+                               text(run.mean_staleness), text(run.max_staleness)});
+    return cells;
+}
+
+std::vector<std::string> design_cells(const RunResult& run, const VariantFacts& variant) {
+    std::vector<std::string> cells{run.design,
+                                   variant.text,
+                                   text(run.cycles),
+                                   text(run.core_mhz),
+                                   text(milliseconds(run)),
+                                   text(frames_per_second(run)),
+                                   text(run.fragments)};
+    const std::vector<std::string> hazards = hazard_cells(run);
+    cells.insert(cells.end(), hazards.begin(), hazards.end());
+    for (const std::uint64_t count : {run.wrong_pixels, run.tied_pixels, run.overflow_pixels, run.unexplained_pixels,
+                                      run.lost_fragments, run.lost_updates})
+        cells.push_back(text(count));
+    return cells;
+}
 
 } // namespace
 
@@ -104,8 +110,9 @@ std::string Table::text() const {
 }
 
 Table designs_table(const Comparison& comparison) {
-    WideTable table({design_columns.begin(), design_columns.end()});
-    for (const RunResult& run : comparison.runs) {
+    WideTable table(design_columns());
+    for (std::size_t i = 0; i < comparison.runs.size(); ++i) {
+        const RunResult& run = comparison.runs[i];
         ordered_json further;
         for (std::size_t layer = 0; layer < run.layers.size(); ++layer)
             further["layer" + std::to_string(layer)] = {{"missing", run.layers[layer].missing},
@@ -114,8 +121,12 @@ Table designs_table(const Comparison& comparison) {
         further["caches"] = run.caches;
         further["bytes"] = run.bytes;
         further["area"] = run.area;
-        table.add_row(design_cells(run), flatten(further));
+        table.add_row(design_cells(run, comparison.variants.at(i)), flatten(further));
     }
+    if (comparison.equal_area)
+        for (const EqualArea::Unfit& unfit : comparison.equal_area->does_not_fit)
+            table.add_row({unfit.name, unfit.variant.text},
+                          flatten({{"does_not_fit", {{"needed_bytes", unfit.needed}}}}));
     return table.finish("designs.csv");
 }
 
@@ -148,14 +159,15 @@ Table passes_table(const Comparison& comparison) {
 
 Table hazard_pairs_table(const Comparison& comparison) {
     Table table{"hazard_pairs.csv",
-                {"design", "number", "listed", "hazards", "class", "x [pixels]", "y [pixels]", "victim [quad]",
+                {"design", "number", "listed", "hazards", "class", "kind", "x [pixels]", "y [pixels]", "victim [quad]",
                  "aggressor [quad]", "missing [versions]", "read [core cycle]", "write [core cycle]"},
                 {}};
     for (const RunResult& run : comparison.runs)
         for (std::size_t i = 0; i < run.pairs.size(); ++i) {
             const pipeline::HazardPair& pair = run.pairs[i];
             table.rows.push_back({run.design, text(std::uint64_t{i + 1}), text(std::uint64_t{run.pairs.size()}),
-                                  text(run.hazards.total()), hazard_name(pair.kind), text(std::uint64_t{pair.x}),
+                                  text(run.hazards.total()), std::string(hazard_name(pair.cause)),
+                                  std::string(hazard_name(pair.kind)), text(std::uint64_t{pair.x}),
                                   text(std::uint64_t{pair.y}), text(std::uint64_t{pair.victim}),
                                   text(std::uint64_t{pair.aggressor}), text(std::uint64_t{pair.missing}),
                                   text(pair.read), text(pair.write)});

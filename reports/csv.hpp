@@ -16,7 +16,7 @@ struct Table {
     std::string text() const;
 };
 
-/// One row per design.
+/// One row per design; of one that does not fit on chip only its name and what it needs.
 Table designs_table(const Comparison& comparison);
 /// One row per design, stage and number: counters, and the cycles of each activity.
 Table stages_table(const Comparison& comparison);

@@ -10,7 +10,7 @@ namespace reports {
 
 struct LeftOutEntry {
     std::string unit, reason;
-    std::vector<std::string> designs; ///< those that lack it
+    std::vector<std::string> designs; ///< labels of those that lack it
     bool by_all = false;              ///< these are all designs
 };
 

@@ -65,10 +65,10 @@ Legend hazard_legend(const pipeline::HazardCounts& counts, const std::string& de
     legend.title = counts.total() == 0 ? fmt::format("{}: no hazards", design)
                                        : fmt::format("{}: {} hazards, {} pixels", design, with_commas(counts.total()),
                                                      with_commas(counts.pixels));
-    const std::array<std::uint64_t, 4> each{counts.h1, counts.h2, counts.h3, counts.h4};
-    for (std::size_t kind = 0; kind < each.size(); ++kind)
+    for (std::size_t cause = 0; cause < pipeline::hazard_classes; ++cause)
         legend.swatches.push_back(
-            {hazard_colours[kind], fmt::format("{}: {}", hazard_texts[kind], with_commas(each[kind]))});
+            {hazard_colours[cause], fmt::format("{}: {}", hazard_texts[cause],
+                                                with_commas(counts.of(static_cast<pipeline::HazardClass>(cause))))});
     return legend;
 }
 

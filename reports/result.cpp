@@ -1,5 +1,6 @@
 #include "reports/result.hpp"
 
+#include "reports/hazard_text.hpp"
 #include "reports/run_numbers.hpp"
 #include "ropsim_build.hpp"
 
@@ -79,16 +80,31 @@ ordered_json needs_json(const std::vector<std::string>& built,
 
 ordered_json hazards_json(const pipeline::RunResult& run) {
     const pipeline::HazardCounts& hazards = run.hazards;
-    return {{"h1", hazards.h1},
-            {"h2", hazards.h2},
-            {"h3", hazards.h3},
-            {"h4", hazards.h4},
-            {"total", hazards.total()},
-            {"pixels", hazards.pixels},
-            {"per_million", hazards_per_million(run)},
-            {"pairs_kept", run.pairs.size()},
-            {"mean_staleness", run.mean_staleness},
-            {"max_staleness", run.max_staleness}};
+    ordered_json json;
+    for (std::size_t cause = 0; cause < pipeline::hazard_classes; ++cause)
+        json[std::string(hazard_class_names[cause])] = hazards.of(static_cast<pipeline::HazardClass>(cause));
+    json["total"] = hazards.total();
+    for (const auto kind : {pipeline::HazardKind::concurrency, pipeline::HazardKind::incoherence})
+        json[std::string(hazard_name(kind))] = hazards.of(kind);
+    for_each_hazard_cell(hazards, [&json](const std::string& name, std::uint64_t count) { json[name] = count; });
+    json["pixels"] = hazards.pixels;
+    json["per_million"] = hazards_per_million(run);
+    for (const auto kind : {pipeline::HazardKind::concurrency, pipeline::HazardKind::incoherence})
+        json[std::string(hazard_name(kind)) + "_per_million"] = hazards_per_million(run, kind);
+    json["pairs_kept"] = run.pairs.size();
+    json["mean_staleness"] = run.mean_staleness;
+    json["max_staleness"] = run.max_staleness;
+    return json;
+}
+
+ordered_json equal_area_json(const EqualArea& equal) {
+    ordered_json list = ordered_json::array();
+    for (const EqualArea::Unfit& unfit : equal.does_not_fit)
+        list.push_back({{"id", unfit.name},
+                        {"design", unfit.variant.design},
+                        {"variant", unfit.variant.text},
+                        {"needed_bytes", unfit.needed}});
+    return {{"bytes", equal.bytes}, {"does_not_fit", std::move(list)}};
 }
 
 ordered_json layers_json(const pipeline::RunResult& run) {
@@ -148,10 +164,14 @@ struct Needs {
     std::vector<std::pair<std::string, std::string>> left_out;
 };
 
-ordered_json design_json(const pipeline::RunResult& run, const ordered_json& parameters, const ordered_json& support,
-                         const Needs& common) {
+ordered_json design_json(const Comparison& comparison, std::size_t number, const Needs& common) {
+    const pipeline::RunResult& run = comparison.runs[number];
+    const VariantFacts& variant = comparison.variants.at(number);
     ordered_json json = {{"id", run.design},
-                         {"parameters", object_or_empty(parameters)},
+                         {"design", variant.design},
+                         {"variant", variant.text},
+                         {"parameters", object_or_empty(comparison.design_parameters.at(number))},
+                         {"gpu_changes", object_or_empty(variant.gpu_changes)},
                          {"cycles", run.cycles},
                          {"core_mhz", run.core_mhz},
                          {"milliseconds", milliseconds(run)},
@@ -171,7 +191,7 @@ ordered_json design_json(const pipeline::RunResult& run, const ordered_json& par
                          {"caches", object_or_empty(run.caches)},
                          {"bytes", object_or_empty(run.bytes)},
                          {"area", object_or_empty(run.area)},
-                         {"supports", object_or_empty(support)},
+                         {"supports", object_or_empty(comparison.design_support.at(number))},
                          {"passes", passes_json(run)},
                          {"draws", draws_json(run)}};
     // The comparison's "needs" states what all designs have in common.
@@ -196,13 +216,13 @@ ordered_json result_json(const Comparison& comparison) {
                          {"host", host_json(comparison)},
                          {"needs", needs_json({}, {})},
                          {"designs", ordered_json::array()}};
+    if (comparison.equal_area) json["equal_area"] = equal_area_json(*comparison.equal_area);
     if (comparison.runs.empty()) return json;
     const Needs common{common_to_all(comparison.runs, &pipeline::RunResult::built),
                        common_to_all(comparison.runs, &pipeline::RunResult::left_out)};
     json["needs"] = needs_json(common.built, common.left_out);
     for (std::size_t i = 0; i < comparison.runs.size(); ++i)
-        json["designs"].push_back(design_json(comparison.runs[i], comparison.design_parameters.at(i),
-                                              comparison.design_support.at(i), common));
+        json["designs"].push_back(design_json(comparison, i, common));
     return json;
 }
 

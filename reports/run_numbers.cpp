@@ -11,9 +11,24 @@ double milliseconds(const pipeline::RunResult& run) {
 
 double frames_per_second(const pipeline::RunResult& run) { return run.cycles > 0 ? 1e3 / milliseconds(run) : 0.0; }
 
-double hazards_per_million(const pipeline::RunResult& run) {
-    return run.fragments == 0 ? 0.0
-                              : 1e6 * static_cast<double>(run.hazards.total()) / static_cast<double>(run.fragments);
+namespace {
+
+double per_million(std::uint64_t count, const pipeline::RunResult& run) {
+    return run.fragments == 0 ? 0.0 : 1e6 * static_cast<double>(count) / static_cast<double>(run.fragments);
+}
+
+} // namespace
+
+double hazards_per_million(const pipeline::RunResult& run) { return per_million(run.hazards.total(), run); }
+
+double hazards_per_million(const pipeline::RunResult& run, pipeline::HazardKind kind) {
+    return per_million(run.hazards.of(kind), run);
+}
+
+std::optional<double> on_chip_bytes(const pipeline::RunResult& run) {
+    const auto found = run.area.find("total_bytes");
+    if (found == run.area.end()) return std::nullopt;
+    return found->get<double>();
 }
 
 double cycles_per_second(const pipeline::RunResult& run) {

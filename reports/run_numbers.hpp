@@ -14,8 +14,11 @@ namespace reports {
 double frames_per_second(const pipeline::RunResult& run);
 /// Simulated milliseconds of the frame, with what sorting its triangles takes before.
 double milliseconds(const pipeline::RunResult& run);
-/// Hazards in a million fragments.
+/// Hazards in a million fragments: all, and those of a kind.
 double hazards_per_million(const pipeline::RunResult& run);
+double hazards_per_million(const pipeline::RunResult& run, pipeline::HazardKind kind);
+/// On-chip bytes of the design; nothing where the run does not say.
+std::optional<double> on_chip_bytes(const pipeline::RunResult& run);
 /// Simulated core cycles per second of host time; 0 when it was not measured.
 double cycles_per_second(const pipeline::RunResult& run);
 /// Bytes over a link (a key of RunResult::bytes, for example "dram") per fragment; nothing when there is no such link.

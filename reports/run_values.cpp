@@ -33,19 +33,44 @@ RunValues::RunValues(const Comparison& comparison, std::size_t run) {
     read_passes(comparison, comparison.runs.at(run));
 }
 
+namespace {
+
+struct PassSums {
+    double cycles = 0, bytes = 0;
+};
+
 // "light layer 2" is a part of the frame's pass "light".
+PassSums sums_of(const pipeline::RunResult& run, const std::string& pass) {
+    PassSums sums;
+    for (const pipeline::PassResult& part : run.passes) {
+        if (part.name != pass && !part.name.starts_with(pass + " ")) continue;
+        sums.cycles += static_cast<double>(part.cycles);
+        for (const auto& [path, leaf] : flatten(part.counters))
+            if (path.starts_with("memory.bytes.")) sums.bytes += leaf.get<double>();
+    }
+    return sums;
+}
+
+// Designs that peel clear their layers within the pass, others in a pass before it.
+PassSums clears_of_kbuffer(const pipeline::Frame& frame, const pipeline::RunResult& run) {
+    PassSums sums;
+    for (const pipeline::Pass& pass : frame.passes) {
+        if (pass.kind != pipeline::PassKind::clear || pass.writes != std::vector<std::string>{"kbuffer"}) continue;
+        const PassSums cleared = sums_of(run, pass.name);
+        sums.cycles += cleared.cycles;
+        sums.bytes += cleared.bytes;
+    }
+    return sums;
+}
+
+} // namespace
+
 void RunValues::read_passes(const Comparison& comparison, const pipeline::RunResult& run) {
     const double milliseconds_per_cycle = run.core_mhz > 0.0 ? 1.0 / (run.core_mhz * 1000.0) : 0.0;
     for (const pipeline::Pass& pass : comparison.frame->passes) {
         if (pass.kind != pipeline::PassKind::draw) continue;
-        double cycles = 0, bytes = 0;
-        for (const pipeline::PassResult& part : run.passes) {
-            if (part.name != pass.name && !part.name.starts_with(pass.name + " ")) continue;
-            cycles += static_cast<double>(part.cycles);
-            for (const auto& [path, leaf] : flatten(part.counters))
-                if (path.starts_with("memory.bytes.")) bytes += leaf.get<double>();
-        }
-        const auto write = [&](const std::string& prefix) {
+        auto [cycles, bytes] = sums_of(run, pass.name);
+        const auto write = [&, &cycles = cycles, &bytes = bytes](const std::string& prefix) {
             const double ms = cycles * milliseconds_per_cycle;
             numbers_[prefix + "ms"] = ms;
             numbers_[prefix + "share"] = run.cycles == 0 ? 0.0 : cycles / static_cast<double>(run.cycles);
@@ -56,6 +81,9 @@ void RunValues::read_passes(const Comparison& comparison, const pipeline::RunRes
         };
         write(fmt::format("pass.{}.", pass.name));
         if (!pass.kbuffer) continue;
+        const PassSums cleared = clears_of_kbuffer(*comparison.frame, run);
+        cycles += cleared.cycles;
+        bytes += cleared.bytes;
         write("kbuffer.");
         const double layers = comparison.frame->program->k();
         const double ms = numbers_["kbuffer.ms"];

@@ -41,7 +41,8 @@ StudySeries series_of(TomlTable& table) {
     series.settings = table.texts("settings");
     series.design = table.text_or("design", "");
     if (!series.design.empty()) {
-        if (!has_variable(series.design)) expect_one_of(table, "design", series.design, ids_of(models::designs()));
+        const std::string id = series.design.substr(0, series.design.find('?'));
+        if (!has_variable(id)) expect_one_of(table, "design", id, ids_of(models::designs()));
         return series;
     }
     series.prepare = table.texts("prepare");
@@ -61,6 +62,8 @@ const std::map<std::string, std::string>& titles() {
         {"bytes", "bytes fetched"},
         {"draws", "draw calls"},
         {"hazards.per_million", "hazards per million fragments"},
+        {"hazards.concurrency_per_million", "hazards by concurrency per million fragments"},
+        {"hazards.incoherence_per_million", "hazards by incoherence per million fragments"},
         {"wrong_share", "wrong pixels over drawn pixels"},
         {"colour_error", "mean colour error of drawn pixels"},
         {"colour_error_worst", "largest colour error"},

@@ -26,20 +26,17 @@ struct Column {
     const char* title;
     const char* unit;
 };
-constexpr std::array<Column, 14> columns{{{"design", ""},
+constexpr std::array<Column, 11> columns{{{"design", ""},
                                           {"cycles", ""},
                                           {"time", "ms"},
-                                          {"frames", "/s"},
-                                          {"fragm.", ""},
-                                          {"H1", "hazards"},
-                                          {"H2", ""},
-                                          {"H3", ""},
-                                          {"H4", ""},
-                                          {"wrong", "pixels"},
-                                          {"lost", "fragm."},
-                                          {"DRAM", "B/fragm"},
                                           {"speed", "x"},
-                                          {"host", "cycles/s"}}};
+                                          {"fragm.", ""},
+                                          {"concurrency", "hazards"},
+                                          {"incoherence", "hazards"},
+                                          {"wrong", "pixels"},
+                                          {"DRAM", "B/fragm"},
+                                          {"on chip", "KiB"},
+                                          {"host", "cyc/s"}}};
 
 std::string paint(std::string text, const char* code, bool colour) {
     return colour ? fmt::format("\033[{}m{}\033[0m", code, text) : text;
@@ -57,22 +54,20 @@ Cell error_cell(std::uint64_t number, bool exact) {
 
 std::string optional_text(std::optional<double> number) { return number ? fmt::format("{:.1f}", *number) : "-"; }
 
-Row row_of(const RunResult& run, const RunResult& first, bool exact) {
+Row row_of(const RunResult& run, const std::string& name, const RunResult& base, bool exact) {
     const pipeline::HazardCounts& hazards = run.hazards;
-    const double relative = run.cycles > 0 && first.cycles > 0 ? milliseconds(first) / milliseconds(run) : 0.0;
-    return {{run.design},
+    const double relative = run.cycles > 0 && base.cycles > 0 ? milliseconds(base) / milliseconds(run) : 0.0;
+    const auto area = on_chip_bytes(run);
+    return {{name},
             count_cell(run.cycles, exact),
             {fmt::format("{:.{}f}", milliseconds(run), milliseconds(run) < 99.95 ? 3 : 1)},
-            {short_number(frames_per_second(run))},
-            count_cell(run.fragments, exact),
-            error_cell(hazards.h1, exact),
-            error_cell(hazards.h2, exact),
-            error_cell(hazards.h3, exact),
-            error_cell(hazards.h4, exact),
-            {count_text(run.wrong_pixels, exact), run.wrong_pixels > 0 ? Emphasis::bad : Emphasis::good},
-            error_cell(run.lost_fragments, exact),
-            {optional_text(bytes_per_fragment(run, "dram"))},
             {fmt::format("{:.2f}", relative)},
+            count_cell(run.fragments, exact),
+            error_cell(hazards.of(pipeline::HazardKind::concurrency), exact),
+            error_cell(hazards.of(pipeline::HazardKind::incoherence), exact),
+            {count_text(run.wrong_pixels, exact), run.wrong_pixels > 0 ? Emphasis::bad : Emphasis::good},
+            {optional_text(bytes_per_fragment(run, "dram"))},
+            {optional_text(area ? std::optional(*area / 1024) : std::nullopt)},
             {short_number(cycles_per_second(run))}};
 }
 
@@ -122,6 +117,52 @@ std::string header_of(const Widths& widths, bool colour) {
     return paint(without_trailing_blanks(titles), "1", colour) + "\n" + without_trailing_blanks(units) + "\n";
 }
 
+std::vector<Row> rows_of(const Comparison& comparison, bool labels, bool exact) {
+    std::vector<Row> rows;
+    const RunResult& base = comparison.runs.at(comparison.base_run());
+    for (std::size_t i = 0; i < comparison.runs.size(); ++i)
+        rows.push_back(row_of(comparison.runs[i], labels ? comparison.variants.at(i).label : comparison.runs[i].design,
+                              base, exact));
+    return rows;
+}
+
+std::string base_text(const Comparison& comparison, bool labels) {
+    if (comparison.runs.size() < 2) return "";
+    const std::size_t base = comparison.base_run();
+    return fmt::format("speed: times that of {}\n",
+                       labels ? comparison.variants.at(base).label : comparison.runs[base].design);
+}
+
+std::string caches_text(const RunResult& run) {
+    std::string text;
+    for (const auto& cache : run.area.at("tile_caches").items())
+        if (const auto bytes = cache.value().get<std::uint64_t>(); bytes != 0)
+            text += fmt::format("{}{} {}", text.empty() ? "" : ", ", cache.key(), with_commas(bytes));
+    return text;
+}
+
+// A row for each design that does not fit, and what the tile caches of the others got.
+std::string equal_area_text(const Comparison& comparison, TerminalStyle style) {
+    if (!comparison.equal_area) return "";
+    std::string text;
+    for (const EqualArea::Unfit& unfit : comparison.equal_area->does_not_fit)
+        text += paint(fmt::format("{}  does not fit: needs {} bytes\n", unfit.variant.label, with_commas(unfit.needed)),
+                      "31", style.colour);
+    text += fmt::format("equal area: {} bytes on chip; tile caches got\n", with_commas(comparison.equal_area->bytes));
+    for (std::size_t i = 0; i < comparison.runs.size(); ++i)
+        text += fmt::format("  {}: {} bytes\n", comparison.variants.at(i).label, caches_text(comparison.runs[i]));
+    return text;
+}
+
+std::string variants_text(const Comparison& comparison, TerminalStyle style) {
+    std::string text;
+    for (std::size_t i = 0; i < comparison.runs.size(); ++i)
+        if (comparison.runs[i].design != comparison.variants.at(i).text)
+            text += reports::wrap(fmt::format("{}: {}", comparison.runs[i].design, comparison.variants[i].text),
+                                  style.columns, 2);
+    return text;
+}
+
 } // namespace
 
 std::string wrap(const std::string& text, std::size_t columns_allowed, std::size_t indent) {
@@ -155,17 +196,24 @@ std::string heading(const Comparison& comparison, TerminalStyle style) {
 }
 
 std::string designs_text(const Comparison& comparison, TerminalStyle style) {
+    // The fullest form that fits: whole numbers before short ones, and the names of folders only where nothing else
+    // has room.
+    struct Form {
+        bool labels, exact;
+    };
     std::vector<Row> rows;
     Widths widths{};
-    for (const bool exact : {true, false}) {
-        rows.clear();
-        for (const RunResult& run : comparison.runs) rows.push_back(row_of(run, comparison.runs.front(), exact));
+    bool labels = true;
+    for (const Form form : {Form{true, true}, Form{true, false}, Form{false, false}}) {
+        rows = rows_of(comparison, form.labels, form.exact);
         widths = widths_of(rows);
+        labels = form.labels;
         if (total(widths) <= style.columns) break;
     }
     std::string text = header_of(widths, style.colour);
     for (const Row& row : rows) text += line_of(row, widths, style.colour);
-    return text;
+    return text + equal_area_text(comparison, style) + base_text(comparison, labels) +
+           (labels ? "" : variants_text(comparison, style));
 }
 
 std::string left_out_text(const Comparison& comparison, TerminalStyle style) {

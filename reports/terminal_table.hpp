@@ -15,7 +15,8 @@ struct TerminalStyle {
 /// One line on what was drawn on what.
 std::string heading(const Comparison& comparison, TerminalStyle style);
 
-/// One row per design; numbers are shortened (12.3M) where the exact ones do not fit.
+/// One row per design: what concurrency and incoherence break, and what protection costs in time and on chip. Numbers
+/// are shortened (12.3M) where the exact ones do not fit.
 std::string designs_text(const Comparison& comparison, TerminalStyle style);
 
 /// What was left out and why, each once, with the designs it concerns unless it concerns all.

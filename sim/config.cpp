@@ -145,21 +145,23 @@ std::string Config::take_text(const std::string& path) {
     return text;
 }
 
-void Config::set(std::string_view assignment) {
+void Config::set(std::string_view assignment, const std::string& place) {
     const std::size_t equals = assignment.find('=');
     const std::string key(trimmed(assignment.substr(0, equals)));
-    const auto bad = [&] { return InputError(fmt::format("--set: expected SECTION.KEY=VALUE, got '{}'", assignment)); };
+    const auto bad = [&] {
+        return InputError(fmt::format("{}: expected SECTION.KEY=VALUE, got '{}'", place, assignment));
+    };
     const bool plain_key = !key.empty() && key.find_first_of("\"'\n#[]{} \t") == std::string::npos;
     if (equals == std::string_view::npos || !plain_key) throw bad();
     const std::string value(trimmed(assignment.substr(equals + 1)));
     if (value.find('\n') != std::string::npos) throw bad();
     try {
-        insert_toml(key + " = " + value, "--set", &value);
+        insert_toml(key + " = " + value, place, &value);
     } catch (const toml::parse_error&) {
         // Not a TOML value, so it is text without quotes.
         if (value.find('\'') != std::string::npos) throw bad();
         try {
-            insert_toml(key + " = '" + value + "'", "--set", &value);
+            insert_toml(key + " = '" + value + "'", place, &value);
         } catch (const toml::parse_error&) {
             throw bad();
         }

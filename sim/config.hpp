@@ -29,8 +29,9 @@ class Config {
     static Config from_toml_file(const std::filesystem::path& path);
     static Config from_toml_text(std::string_view text, const std::string& name);
 
-    /// "cache.lines=64", as from the command line; later ones win. Text needs no quotes: "cache.policy=lru".
-    void set(std::string_view assignment);
+    /// "cache.lines=64", as from the command line; later ones win. Text needs no quotes: "cache.policy=lru". `place`
+    /// begins what errors say of it.
+    void set(std::string_view assignment, const std::string& place = "--set");
 
     /// Takes every value of `base` that is not configured here, with its place and origin.
     void complete_from(const Config& base);

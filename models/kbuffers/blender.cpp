@@ -41,11 +41,11 @@ class Blender final : public ConfiguredDesign<Blender, BlenderParams> {
         return plan;
     }
     // Per ROP: the values inside the pipeline (entries and fragment), and one address comparator per stage.
-    nlohmann::ordered_json area(const ModifyProgram& program, const View&, std::uint32_t) const override {
-        return {{"added_state_bits", std::uint64_t{params_.latency} * program.bytes_per_pixel() * 8},
-                {"added_comparators", params_.interlock == BlendInterlock::none ? 0 : params_.latency},
-                {"added_alu_lanes", params_.lanes},
-                {"per", "ROP"}};
+    AddedHardware area(const ModifyProgram& program, const View&, const GpuShape& shape) const override {
+        const bool compares = params_.interlock != BlendInterlock::none;
+        return {{{"blender_pipeline", pipeline_bits(program, params_.latency, shape)}},
+                compares ? std::uint64_t{params_.latency} * shape.rops : 0,
+                std::uint64_t{params_.lanes} * shape.rops};
     }
 };
 

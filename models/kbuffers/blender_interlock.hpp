@@ -34,14 +34,10 @@ inline std::string blender_refuses(const pipeline::ModifyProgram& program) {
     return program.needs_texture() ? "it fetches a table, which a blender cannot" : "";
 }
 
-inline nlohmann::ordered_json blender_area(const pipeline::ModifyProgram& program, std::uint32_t latency,
-                                           std::uint64_t interlock_bits, std::uint64_t comparators,
-                                           std::uint32_t lanes) {
-    return {{"added_state_bits", std::uint64_t{latency} * program.bytes_per_pixel() * 8 + interlock_bits},
-            {"interlock_bits", interlock_bits},
-            {"added_comparators", comparators},
-            {"added_alu_lanes", lanes},
-            {"per", "ROP"}};
+/// One pixel for every stage of every ROP's blender.
+inline std::uint64_t pipeline_bits(const pipeline::ModifyProgram& program, std::uint32_t latency,
+                                   const pipeline::GpuShape& shape) {
+    return std::uint64_t{latency} * program.bytes_per_pixel() * 8 * shape.rops;
 }
 
 } // namespace models

@@ -40,9 +40,11 @@ class Cam final : public ConfiguredDesign<Cam, CamParams> {
         return plan;
     }
     // Block number and mask of each entry.
-    nlohmann::ordered_json area(const ModifyProgram& program, const View&, std::uint32_t) const override {
-        return blender_area(program, params_.latency, std::uint64_t{params_.entries} * (24 + 4), params_.entries,
-                            params_.lanes);
+    AddedHardware area(const ModifyProgram& program, const View&, const GpuShape& shape) const override {
+        return {{{"blender_pipeline", pipeline_bits(program, params_.latency, shape)},
+                 {"associative_memory", std::uint64_t{params_.entries} * (24 + 4) * shape.rop_groups}},
+                std::uint64_t{params_.entries} * shape.rop_groups,
+                std::uint64_t{params_.lanes} * shape.rops};
     }
 };
 

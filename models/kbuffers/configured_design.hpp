@@ -17,8 +17,9 @@ class ConfiguredDesign : public pipeline::KBufferDesign {
     std::string refuses(const pipeline::ModifyProgram&) const override { return {}; }
     nlohmann::ordered_json parameters() const override { return sim::to_json(params_); }
     /// Hardware that is there anyway.
-    nlohmann::ordered_json area(const pipeline::ModifyProgram&, const pipeline::View&, std::uint32_t) const override {
-        return {{"added_state_bits", 0}, {"added_comparators", 0}, {"added_alu_lanes", 0}};
+    pipeline::AddedHardware area(const pipeline::ModifyProgram&, const pipeline::View&,
+                                 const pipeline::GpuShape&) const override {
+        return {};
     }
 
     static DesignInfo info() {

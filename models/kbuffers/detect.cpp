@@ -39,12 +39,9 @@ class Detect final : public ConfiguredDesign<Detect, DetectParams> {
         return plan;
     }
     // A number per sample of the surface, one with each quad's pixels in flight, one comparator per ROP.
-    nlohmann::ordered_json area(const ModifyProgram&, const View& view, std::uint32_t quads_in_flight) const override {
-        const std::uint64_t numbers = view.samples_drawn() + std::uint64_t{4} * quads_in_flight;
-        return {{"added_state_bits", numbers * params_.version_bits},
-                {"added_comparators", 1},
-                {"added_alu_lanes", 0},
-                {"per", "GPU; comparators per ROP"}};
+    AddedHardware area(const ModifyProgram&, const View& view, const GpuShape& shape) const override {
+        const std::uint64_t numbers = view.samples_drawn() + std::uint64_t{4} * shape.quads_in_flight;
+        return {{{"version_bits", numbers * params_.version_bits}}, shape.rops, 0};
     }
 };
 

@@ -16,7 +16,8 @@ using namespace pipeline;
 
 struct FramebufferFetchParams {
     std::uint32_t bytes_per_pixel = 128;
-    std::uint32_t read_latency = 8;
+    std::uint32_t read_request_latency = 4;
+    std::uint32_t read_return_latency = 4;
     std::uint32_t lock_latency = 2;
     std::uint32_t grants_per_clk = 6;
 
@@ -27,7 +28,10 @@ struct FramebufferFetchParams {
                            "Tile memory of a pixel, or of each of its samples; programs that need more are refused")
                            .unit("bytes")
                            .range(16, 1024),
-                       sim::field<&P::read_latency>("From a read's arrival at the tile memory to its value")
+                       sim::field<&P::read_request_latency>("From a read's arrival to the access of the tile memory")
+                           .unit("cycles")
+                           .range(0, 1000),
+                       sim::field<&P::read_return_latency>("From that access to the value in the shader")
                            .unit("cycles")
                            .range(1, 1000)},
             lock_table_fields<P>());
@@ -51,16 +55,17 @@ class FramebufferFetch final : public ConfiguredDesign<FramebufferFetch, Framebu
         KBufferPlan plan = in_critical_section(CriticalSection::ordered, LockArea::pixel, params_);
         plan.shader.atomic_reads = true;
         plan.shader.tile_memory = true;
-        plan.shader.read_latency = params_.read_latency;
+        plan.shader.read_request_latency = params_.read_request_latency;
+        plan.shader.read_return_latency = params_.read_return_latency;
         return plan;
     }
     // Of a tiled GPU: memory of one tile of 32x32 pixels, and a place in the order unit for each quad in flight.
-    nlohmann::ordered_json area(const ModifyProgram&, const View& view, std::uint32_t quads_in_flight) const override {
-        return {{"added_state_bits", std::uint64_t{1024} * view.samples * params_.bytes_per_pixel * 8 +
-                                         std::uint64_t{quads_in_flight} * 42},
-                {"added_comparators", quads_in_flight},
-                {"added_alu_lanes", 0},
-                {"per", "GPU with one tile of 32x32 pixels"}};
+    AddedHardware area(const ModifyProgram&, const View& view, const GpuShape& shape) const override {
+        constexpr std::uint64_t tile_pixels = 1024; // 32x32
+        return {{{"tile_memory", tile_pixels * view.samples * params_.bytes_per_pixel * 8},
+                 {"locks", std::uint64_t{shape.quads_in_flight} * 42}},
+                shape.quads_in_flight,
+                0};
     }
 };
 

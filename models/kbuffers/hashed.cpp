@@ -41,9 +41,11 @@ class Hashed final : public ConfiguredDesign<Hashed, HashedParams> {
         plan.blender.test_entries = params_.counters;
         return plan;
     }
-    nlohmann::ordered_json area(const ModifyProgram& program, const View&, std::uint32_t) const override {
-        const std::uint64_t bits = std::uint64_t{params_.counters} * std::bit_width(params_.latency);
-        return blender_area(program, params_.latency, bits, 0, params_.lanes);
+    AddedHardware area(const ModifyProgram& program, const View&, const GpuShape& shape) const override {
+        return {{{"blender_pipeline", pipeline_bits(program, params_.latency, shape)},
+                 {"counters", std::uint64_t{params_.counters} * std::bit_width(params_.latency) * shape.rop_groups}},
+                0,
+                std::uint64_t{params_.lanes} * shape.rops};
     }
 };
 

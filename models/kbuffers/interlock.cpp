@@ -46,11 +46,8 @@ class Interlock final : public ConfiguredDesign<Interlock, InterlockParams> {
         return plan;
     }
     // A place, a mask and a thread number for each quad in flight, which a release is compared with.
-    nlohmann::ordered_json area(const ModifyProgram&, const View&, std::uint32_t quads_in_flight) const override {
-        return {{"added_state_bits", std::uint64_t{quads_in_flight} * (26 + 4 + 12)},
-                {"added_comparators", quads_in_flight},
-                {"added_alu_lanes", 0},
-                {"per", "GPU"}};
+    AddedHardware area(const ModifyProgram&, const View&, const GpuShape& shape) const override {
+        return {{{"locks", std::uint64_t{shape.quads_in_flight} * (26 + 4 + 12)}}, shape.quads_in_flight, 0};
     }
 };
 

@@ -58,16 +58,15 @@ class PeelRop final : public ConfiguredDesign<PeelRop, PeelRopParams> {
         return plan;
     }
     // Entries and fragment inside; a depth comparator per entry; the bounds of all tiles or pixels.
-    nlohmann::ordered_json area(const ModifyProgram& program, const View& view, std::uint32_t) const override {
+    AddedHardware area(const ModifyProgram& program, const View& view, const GpuShape& shape) const override {
         const std::uint64_t pixels = view.samples_drawn();
         const std::uint64_t bounds = params_.early_reject == EarlyReject::none   ? 0
                                      : params_.early_reject == EarlyReject::tile ? pixels / 16
                                                                                  : pixels;
-        return {{"added_state_bits", std::uint64_t{params_.latency} * program.bytes_per_pixel() * 8},
-                {"early_reject_bits_of_the_gpu", bounds * 32},
-                {"added_comparators", program.k()},
-                {"added_alu_lanes", 0},
-                {"per", "ROP"}};
+        return {{{"peeling_pipeline", std::uint64_t{params_.latency} * program.bytes_per_pixel() * 8 * shape.rops},
+                 {"early_reject_bounds", bounds * 32}},
+                std::uint64_t{program.k()} * shape.rops,
+                0};
     }
 };
 

@@ -29,11 +29,8 @@ class Rov final : public ConfiguredDesign<Rov, RovParams> {
         return in_critical_section(CriticalSection::ordered, LockArea::quad, params_);
     }
     // A block number and a ticket for each quad in flight.
-    nlohmann::ordered_json area(const ModifyProgram&, const View&, std::uint32_t quads_in_flight) const override {
-        return {{"added_state_bits", std::uint64_t{quads_in_flight} * (24 + 12)},
-                {"added_comparators", quads_in_flight},
-                {"added_alu_lanes", 0},
-                {"per", "GPU"}};
+    AddedHardware area(const ModifyProgram&, const View&, const GpuShape& shape) const override {
+        return {{{"locks", std::uint64_t{shape.quads_in_flight} * (24 + 12)}}, shape.quads_in_flight, 0};
     }
 };
 

@@ -83,12 +83,10 @@ class ScoreboardTable final : public DispatchGuard {
     ScoreboardTable(const ScoreboardParams& params, const View& view)
         : side_(side_of(params.granularity)),
           columns_((view.width + side_ - 1) / side_),
-          width_(view.width),
           per_pixel_(params.granularity == Granularity::pixel),
           hashed_(params.entries != 0),
           entries_(hashed_ ? params.entries : areas(params.granularity, view)),
-          in_flight_(std::size_t{4} * entries_),
-          pixels_(std::size_t{view.width + 1} * (view.rows() + 1)) {}
+          in_flight_(std::size_t{4} * entries_) {}
 
     std::uint32_t keys() const override { return entries_; }
     std::uint32_t key(const Quad& quad) const override {
@@ -98,43 +96,31 @@ class ScoreboardTable final : public DispatchGuard {
                        : area;
     }
 
-    Conflict check(const Quad& quad, std::uint8_t mask) const override {
-        if (!taken(quad, mask)) return Conflict::none;
-        for (std::uint32_t pixel = 0; pixel < 4; ++pixel)
-            if ((mask >> pixel & 1) != 0 && pixels_[at(quad, pixel)] != 0) return Conflict::true_conflict;
-        return Conflict::false_conflict;
-    }
-    void acquire(const Quad& quad, std::uint8_t mask) override { count(quad, mask, 1); }
-    void release(const Quad& quad, std::uint8_t mask) override { count(quad, mask, -1); }
-
-  private:
-    std::size_t at(const Quad& quad, std::uint32_t pixel) const {
-        return (quad.y + std::size_t{pixel / 2}) * width_ + quad.x + pixel % 2;
-    }
     // Four counters per entry: one per pixel of the quad position, or only the first for coarser areas.
-    bool taken(const Quad& quad, std::uint8_t mask) const {
+    bool blocks(const Quad& quad, std::uint8_t mask) const override {
         const std::size_t first = std::size_t{4} * key(quad);
         if (!per_pixel_) return in_flight_[first] != 0;
         for (std::uint32_t pixel = 0; pixel < 4; ++pixel)
             if ((mask >> pixel & 1) != 0 && in_flight_[first + pixel] != 0) return true;
         return false;
     }
+    void acquire(const Quad& quad, std::uint8_t mask) override { count(quad, mask, 1); }
+    void release(const Quad& quad, std::uint8_t mask) override { count(quad, mask, -1); }
+
+  private:
     void count(const Quad& quad, std::uint8_t mask, std::int32_t by) {
         const std::size_t first = std::size_t{4} * key(quad);
-        if (!per_pixel_) in_flight_[first] += by;
-        for (std::uint32_t pixel = 0; pixel < 4; ++pixel) {
-            if ((mask >> pixel & 1) == 0) continue;
-            if (per_pixel_) in_flight_[first + pixel] += by;
-            pixels_[at(quad, pixel)] += by;
-            CHECK(pixels_[at(quad, pixel)] >= 0);
+        for (std::uint32_t pixel = 0; pixel < (per_pixel_ ? 4U : 1U); ++pixel) {
+            if (per_pixel_ && (mask >> pixel & 1) == 0) continue;
+            in_flight_[first + pixel] += by;
+            CHECK(in_flight_[first + pixel] >= 0);
         }
     }
 
-    std::uint32_t side_, columns_, width_;
+    std::uint32_t side_, columns_;
     bool per_pixel_, hashed_;
     std::uint32_t entries_;
-    std::vector<std::int32_t> in_flight_;
-    std::vector<std::int32_t> pixels_; ///< quads in flight per pixel, to tell true conflicts from false ones
+    std::vector<std::int32_t> in_flight_; ///< quads, by entry and pixel
 };
 
 class Scoreboard final : public ConfiguredDesign<Scoreboard, ScoreboardParams> {
@@ -166,17 +152,14 @@ class Scoreboard final : public ConfiguredDesign<Scoreboard, ScoreboardParams> {
 
     // Table: one counter per entry that can hold all quads in flight (pixel masks: 4 bits). Side buffer: position,
     // sample, mask and a reference to the interpolants of each quad.
-    nlohmann::ordered_json area(const ModifyProgram&, const View& view, std::uint32_t quads_in_flight) const override {
+    AddedHardware area(const ModifyProgram&, const View& view, const GpuShape& shape) const override {
         const std::uint64_t entries = params_.entries != 0 ? params_.entries : areas(params_.granularity, view);
-        const std::uint64_t counter = params_.granularity == Granularity::pixel ? 4 : std::bit_width(quads_in_flight);
+        const std::uint64_t counter =
+            params_.granularity == Granularity::pixel ? 4 : std::bit_width(shape.quads_in_flight);
         const std::uint64_t packet =
             2 * std::bit_width(std::max(view.width, view.height)) + std::bit_width(view.samples - 1) + 4 + 32;
-        return {{"added_state_bits", entries * counter + params_.side_buffer * packet},
-                {"scoreboard_bits", entries * counter},
-                {"side_buffer_bits", params_.side_buffer * packet},
-                {"added_comparators", params_.side_buffer},
-                {"added_alu_lanes", 0},
-                {"per", "GPU"}};
+        return {
+            {{"scoreboard", entries * counter}, {"side_buffer", params_.side_buffer * packet}}, params_.side_buffer, 0};
     }
 };
 

@@ -37,7 +37,10 @@ class StencilRouted final : public ConfiguredDesign<StencilRouted, StencilRouted
         plan.lists.per_pixel = params_.samples;
         plan.lists.passes = params_.passes;
         plan.lists.head_bytes = params_.samples; // a byte of stencil for each sample, all counted down
-        plan.lists.fragment_bytes = plan.lists.read_bytes = 4 * program.floats_per_entry();
+        plan.lists.fragment_bytes = 4 * program.floats_per_entry();
+        plan.lists.chained = false; // the samples of a pixel lie side by side
+        // A fixed number of samples is sorted in registers: Myers, Bavoil, "Stencil routed A-Buffer", SIGGRAPH 2007.
+        plan.lists.array_registers = (params_.samples * params_.passes * program.floats_per_entry() + 3) / 4;
         return plan;
     }
 };

@@ -30,8 +30,11 @@ class TileTicket final : public ConfiguredDesign<TileTicket, TileTicketParams> {
         return blender_with(InterlockTest::tile, params_);
     }
     // A busy bit for each tile of the tile cache is all it needs.
-    nlohmann::ordered_json area(const ModifyProgram& program, const View&, std::uint32_t) const override {
-        return blender_area(program, params_.latency, params_.latency, 0, params_.lanes);
+    AddedHardware area(const ModifyProgram& program, const View&, const GpuShape& shape) const override {
+        return {{{"blender_pipeline", pipeline_bits(program, params_.latency, shape)},
+                 {"tickets", std::uint64_t{params_.latency} * shape.rop_groups}},
+                0,
+                std::uint64_t{params_.lanes} * shape.rops};
     }
 };
 

@@ -7,18 +7,13 @@
 
 namespace pipeline {
 
-enum class Conflict : std::uint8_t {
-    none,
-    true_conflict,  ///< a pixel of the quad is in flight
-    false_conflict, ///< only the guard's granularity or hash says so
-};
-
 /// One instance guards one machine; the fragment scheduler is its only user.
 class DispatchGuard {
   public:
     virtual ~DispatchGuard() = default;
-    /// Would dispatching these pixels of `quad` now break the guard's rule?
-    virtual Conflict check(const Quad& quad, std::uint8_t mask) const = 0;
+    /// Would dispatching these pixels of `quad` now break the guard's rule? Depends on the quad's key, on the pixels
+    /// and on the quads of the same key in flight, and on nothing else.
+    virtual bool blocks(const Quad& quad, std::uint8_t mask) const = 0;
     /// Quads with one key are dispatched in raster order, even when only one of them conflicts. In [0, keys()).
     virtual std::uint32_t key(const Quad& quad) const = 0;
     virtual std::uint32_t keys() const = 0;

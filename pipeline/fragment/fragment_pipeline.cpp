@@ -38,6 +38,8 @@ FragmentPipeline::FragmentPipeline(sim::Context context, std::uint16_t pipe, con
       shading_(params.quads_in_flight),
       locked_(params.quads_in_flight),
       hits_(params.quads_in_flight),
+      returned_(params.quads_in_flight),
+      programs_(params.quads_in_flight),
       finished_(params.quads_in_flight),
       unsent_(params.quads_in_flight) {
     for (std::uint32_t thread = params.quads_in_flight; thread > 0; --thread)
@@ -90,6 +92,13 @@ std::uint32_t FragmentPipeline::captured_samples(const QuadTask& task) const {
     });
 }
 
+// Reserves the ALUs for what the thread executes until it waits again.
+void FragmentPipeline::issue(std::uint16_t thread, std::uint32_t cycles) {
+    issue_free_ = cycle() + cycles;
+    threads_[thread].alu = cycles;
+    stats_.issue_cycles += cycles;
+}
+
 void FragmentPipeline::start(const QuadTask& task) {
     const std::uint16_t index = free_threads_.back();
     free_threads_.pop_back();
@@ -109,13 +118,9 @@ void FragmentPipeline::start(const QuadTask& task) {
         const Quad& quad = pass_->stream->quads[task.quad];
         instructions = pass_->screen->shader->alu(quad.x, quad.y);
         thread.fetches = pass_->screen->shader->fetches(quad.x, quad.y);
+        thread.steps = pass_->screen->shader->steps(quad.x, quad.y);
     }
-    std::uint32_t alu = ceil_div(std::max(instructions, 1U), params_.alu_per_clk);
-    // The program's scalar operations run four wide, for the four fragments of the quad side by side.
-    if (task.slot != no_slot) alu += ceil_div(pass_->program->cost().operations, 4 * params_.alu_per_clk);
-    issue_free_ = cycle() + alu;
-    thread.alu = alu;
-    stats_.issue_cycles += alu;
+    issue(index, ceil_div(std::max(instructions, 1U), params_.alu_per_clk));
     ++stats_.quads;
     stats_.fragments += static_cast<std::uint64_t>(std::popcount(task.pixels()));
     stats_.in_flight_max.note(params_.quads_in_flight - free_threads_.size());
@@ -173,7 +178,7 @@ void FragmentPipeline::fetch_textures(std::uint16_t index) {
         unsent_.push(index);
         return;
     }
-    shaded(index);
+    if (!take_steps(index)) shaded(index);
 }
 
 void FragmentPipeline::append(Chain& chain, std::uint16_t thread) {
@@ -207,15 +212,37 @@ void FragmentPipeline::shaded(std::uint16_t index) {
     const Thread& thread = threads_[index];
     const bool filtered = thread.fetch > 0;
     sim::Cycle ready = filtered ? std::max(cycle(), texture_free_) + texture_.hit_latency : cycle();
-    ready += params_.latency + thread.alu - 1;
+    ready += params_.latency + thread.alu - 1 + pass_->atomic_latency;
     if (!shading_.empty()) ready = std::max(ready, shading_.back().ready);
     shading_.push({index, ready});
 }
 
 void FragmentPipeline::after_values(std::uint16_t index) {
-    const QuadTask& task = threads_[index].task;
-    if (task.slot != no_slot) run_program(task);
-    finished_.push(index);
+    (threads_[index].task.slot != no_slot ? returned_ : finished_).push(index);
+}
+
+// The shader goes on behind its read, before a new quad starts.
+bool FragmentPipeline::issue_program() {
+    if (returned_.empty() || issue_free_ > cycle()) return false;
+    const std::uint16_t index = returned_.front();
+    returned_.pop();
+    const ShaderCost& cost = pass_->shader_costs[pass_->draw_of(threads_[index].task.quad)];
+    issue(index, ceil_div(std::max(cost.behind_read, 1U), params_.alu_per_clk));
+    sim::Cycle ready = cycle() + params_.latency + threads_[index].alu - 1;
+    if (!programs_.empty()) ready = std::max(ready, programs_.back().ready);
+    programs_.push({index, ready});
+    return true;
+}
+
+bool FragmentPipeline::take_programs() {
+    bool progress = false;
+    for (; !programs_.empty() && programs_.front().ready <= cycle(); progress = true) {
+        const std::uint16_t index = programs_.front().thread;
+        programs_.pop();
+        run_program(threads_[index].task);
+        finished_.push(index);
+    }
+    return progress;
 }
 
 bool FragmentPipeline::finish_one() {
@@ -231,7 +258,9 @@ bool FragmentPipeline::take_answers() {
     bool progress = false;
     if (textures_in.connected())
         while (textures_in.peek() != nullptr) {
-            texture_arrived(static_cast<std::uint16_t>(textures_in.receive().tag));
+            const std::uint32_t tag = textures_in.receive().tag;
+            const auto thread = static_cast<std::uint16_t>(tag);
+            (tag & uncached_tag) != 0 ? load_arrived(thread) : texture_arrived(thread);
             progress = true;
         }
     for (auto& port : reads_in)
@@ -267,7 +296,12 @@ bool FragmentPipeline::issue_next() {
 }
 
 bool FragmentPipeline::send_texture_request() {
-    if (unsent_.empty() || !textures_out.ready()) return false;
+    if ((uncached_.empty() && unsent_.empty()) || !textures_out.ready()) return false;
+    if (!uncached_.empty()) { // whoever asks for them holds its place the longer
+        textures_out.send(uncached_.front());
+        uncached_.pop_front();
+        return true;
+    }
     const Thread& thread = threads_[unsent_.front()];
     textures_out.send({fetch_line(thread) * TextureParams::line_bytes, TextureParams::line_bytes, unsent_.front(),
                        pass_->draw_of(thread.task.quad), MemoryClient::texture, false});
@@ -282,6 +316,8 @@ sim::Cycle FragmentPipeline::next_event() {
         if (at > cycle()) next = std::min(next, at);
     };
     if (!hits_.empty()) note(hits_.front().ready);
+    if (!programs_.empty()) note(programs_.front().ready);
+    if (!returned_.empty()) note(issue_free_);
     if (!locked_.empty() && !read_in_hand_) note(texture_free_);
     if (!shading_.empty() && (locks() || !read_in_hand_)) {
         const bool reads = !locks() && threads_[shading_.front().thread].task.slot != no_slot;
@@ -294,6 +330,8 @@ sim::Cycle FragmentPipeline::next_event() {
 sim::Activity FragmentPipeline::tick() {
     bool progress = take_answers();
     progress |= take_hits();
+    progress |= take_programs();
+    progress |= issue_program();
     progress |= read_kbuffer_of_next();
     progress |= finish_one();
     progress |= issue_next();
@@ -301,7 +339,8 @@ sim::Activity FragmentPipeline::tick() {
     if (progress) return sim::Activity::busy;
     if (const sim::Cycle next = next_event(); next != ~sim::Cycle{0}) wake_at(next);
     if (free_threads_.size() == params_.quads_in_flight) return sim::Activity::starved;
-    return read_in_hand_ || !finished_.empty() || !unsent_.empty() ? sim::Activity::blocked : sim::Activity::memory;
+    return read_in_hand_ || !finished_.empty() || !unsent_.empty() || !uncached_.empty() ? sim::Activity::blocked
+                                                                                         : sim::Activity::memory;
 }
 
 } // namespace pipeline

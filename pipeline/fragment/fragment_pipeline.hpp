@@ -3,14 +3,17 @@
 //
 // Modelled: W quads in flight, fewer when the shader's registers run out; ALU issue rate; one texture unit with its L1;
 // pending lines are merged; misses go to memory (textures) or to the ROP partition that owns the pixel (k-buffer);
-// results leave one per cycle, out of order. A k-buffer value is sampled when its L1 lookup hits, or when the memory
-// side serves it; a hit is available after the hit latency, like any texel. Where the shader has a critical section, it
-// asks the lock table before it reads. A miss on its way when its line is
-// invalidated serves whoever waits for it already, and is not kept. A group of sample quads is shaded once; a shader
-// that peels reads the layer before at every sample of the group, and masks those out that it does not capture. The
-// loop of a full-screen pass fetches without waiting as long as it hits, and runs as long as its longest pixel. Not
-// modelled: individual instructions; branches; fetches of one quad that go to several lines. Source: specification 004,
-// sections 7, 7.1 (t_disp, t_rd, t_done; read value rule).
+// results leave one per cycle, out of order. A k-buffer value is that of the cycle in which the array behind the L1 was
+// read: for this quad, for the line it hits, or for the miss it joins. A hit is available after the hit latency, like
+// any texel. What the shader does with the value is a second way through the pipe, with the latency of the first and
+// issue cycles of its own; quads on their second way issue first. Where the shader has a critical section, it asks the
+// lock table before it reads, and runs the program inside. A miss on its way when its line is invalidated serves
+// whoever waits for it already, and is not kept. A group of sample quads is shaded once; a shader that peels reads the
+// layer before at every sample of the group, and masks those out that it does not capture. The loop of a full-screen
+// pass fetches without waiting as long as it hits, and runs as long as its longest pixel; where its loads depend on
+// each other they go past the L1, step by step, each when the one before is back. Not modelled: individual
+// instructions; branches; fetches of one quad that go to several lines. Source: specification 004, sections 7, 7.1
+// (t_disp, t_rd, t_done; read value rule).
 #pragma once
 
 #include "pipeline/fixed_queue.hpp"
@@ -31,7 +34,8 @@
 namespace pipeline {
 
 struct FragmentPipelineStats {
-    sim::Counter quads, fragments, issue_cycles, texture_cycles, peel_rejects, kbuffer_reads;
+    sim::Counter quads, fragments, issue_cycles, texture_cycles, peel_rejects, kbuffer_reads, uncached_loads,
+        uncached_stores;
     sim::HighWater in_flight_max;
     TextureCacheStats l1;
 
@@ -44,6 +48,8 @@ struct FragmentPipelineStats {
                           sim::field<&S::peel_rejects>("Fragments rejected as not of the layer that the pass captures")
                               .unit("fragments"),
                           sim::field<&S::kbuffer_reads>("Quads that read the k-buffer").unit("quads"),
+                          sim::field<&S::uncached_loads>("Loads of full-screen passes past the L1").unit("requests"),
+                          sim::field<&S::uncached_stores>("Stores of full-screen passes past the L1").unit("requests"),
                           sim::field<&S::in_flight_max>("Most quads in flight").unit("quads"),
                           sim::field<&S::l1>("Texture L1 cache")};
     }
@@ -74,6 +80,7 @@ class FragmentPipeline final : public sim::Component {
 
   private:
     static constexpr std::uint16_t nobody = 0xFFFF;
+    static constexpr std::uint32_t uncached_tag = 1U << 16U; ///< of answers that no line of the L1 waits for
 
     struct Thread {
         QuadTask task;
@@ -82,11 +89,15 @@ class FragmentPipeline final : public sim::Component {
         std::uint32_t block = 0;
         std::uint32_t generation =
             0;                 ///< of L1 when the lookup was made, or one of its own when the line was invalidated
-        std::uint32_t alu = 0; ///< cycles its instructions need to issue
+        std::uint32_t alu = 0; ///< cycles its instructions need to issue, on the way through the pipe that comes next
+        sim::Cycle looked_up = 0;                ///< when it looked for its pixel's entries
         std::uint32_t line = TextureCache::none; ///< texture line this thread is filling
         std::uint32_t fetch = 0;                 ///< next of the quad's read-only fetches
         std::uint32_t fetches = 0;               ///< how many the shader of a full-screen pass makes
-        std::uint16_t next = nobody;             ///< in the chain of threads that wait for one block or line
+        std::uint32_t step = 0;                  ///< next of its dependent steps past the L1
+        std::uint32_t steps = 0;
+        std::uint32_t loads = 0;     ///< of the present step, on their way
+        std::uint16_t next = nobody; ///< in the chain of threads that wait for one block or line
     };
     struct Chain { ///< of threads, the oldest first
         std::uint16_t first = nobody;
@@ -113,8 +124,13 @@ class FragmentPipeline final : public sim::Component {
     std::uint64_t fetch_line(const Thread& thread) const;
     void texture_arrived(std::uint16_t thread);
     void fetched(std::uint16_t thread);
+    bool take_steps(std::uint16_t thread);
+    void load_arrived(std::uint16_t thread);
     void shaded(std::uint16_t thread);
     void after_values(std::uint16_t thread);
+    bool issue_program();
+    bool take_programs();
+    void issue(std::uint16_t thread, std::uint32_t cycles);
     void lookup_targets(std::uint16_t index);
     bool send_read(std::uint16_t index);
     void kbuffer_arrived(std::uint16_t index);
@@ -148,13 +164,17 @@ class FragmentPipeline final : public sim::Component {
     std::vector<Thread> threads_;
     std::vector<std::uint16_t> free_threads_;
     std::uint32_t thread_limit_ = 0;
-    std::vector<Chain> block_chain_;     ///< threads that wait for lines of a block
-    std::vector<Chain> line_chain_;      ///< threads that wait for a texture line of L1
-    FixedQueue<Timed> shading_;          ///< in the ALUs, in order
-    FixedQueue<std::uint16_t> locked_;   ///< inside their critical section, about to read
-    FixedQueue<Timed> hits_;             ///< all render targets hit L1, values on their way through the texture unit
-    FixedQueue<std::uint16_t> finished_; ///< shader done, result waits for the way out
-    FixedQueue<std::uint16_t> unsent_;   ///< texture requests the link had no room for
+    std::vector<Chain> block_chain_;      ///< threads that wait for lines of a block
+    std::vector<Chain> line_chain_;       ///< threads that wait for a texture line of L1
+    FixedQueue<Timed> shading_;           ///< in the ALUs, in order
+    FixedQueue<std::uint16_t> locked_;    ///< inside their critical section, about to read
+    FixedQueue<Timed> hits_;              ///< all render targets hit L1, values on their way through the texture unit
+    FixedQueue<std::uint16_t> returned_;  ///< values are there, the program has not been issued
+    FixedQueue<Timed> programs_;          ///< in the ALUs for the second time, in order
+    FixedQueue<std::uint16_t> finished_;  ///< shader done, result waits for the way out
+    FixedQueue<std::uint16_t> unsent_;    ///< texture requests the link had no room for
+    std::deque<MemoryRequest> uncached_;  ///< loads and stores past the L1 the link had no room for
+    std::vector<MemorySegment> segments_; ///< of one step
     std::optional<std::uint16_t> read_in_hand_; ///< looked up, request not sent yet
     sim::Cycle issue_free_ = 0;
     sim::Cycle texture_free_ = 0;

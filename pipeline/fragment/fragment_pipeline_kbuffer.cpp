@@ -27,7 +27,7 @@ bool FragmentPipeline::take_hits() {
     return progress;
 }
 
-// L1 lookup of every render target of the quad's block: hits are sampled now, pending lines joined, the rest asked for.
+// L1 lookup of every render target of the quad's block: hits are read now, pending lines joined, the rest asked for.
 void FragmentPipeline::lookup_targets(std::uint16_t index) {
     Thread& thread = threads_[index];
     const QuadTask& task = thread.task;
@@ -36,6 +36,7 @@ void FragmentPipeline::lookup_targets(std::uint16_t index) {
     const std::uint64_t part_mask = line_targets_ == program_targets_ ? all_targets() : 1;
     thread.block = pass_->layout.block_of(quad.x, quad.y);
     thread.generation = l1_.generation();
+    thread.looked_up = cycle();
     thread.own = all_targets();
     const sim::Cycle cost = std::uint64_t{texture_.cycles_per_rgba32f} * program_targets_;
     texture_free_ = std::max(texture_free_, cycle()) + cost;
@@ -62,7 +63,7 @@ void FragmentPipeline::lookup_targets(std::uint16_t index) {
         for (std::uint32_t pixel = 0; pixel < 4; ++pixel)
             for (std::uint32_t n = 0; n < line_targets_; ++n)
                 payloads_->sample(task.slot, pixel, part * line_targets_ + n, l1_.data(line, pixel, n),
-                                  l1_.version(line, pixel), cycle());
+                                  l1_.version(line, pixel), {cycle(), l1_.filled_at(line)});
     }
     thread.own &= ~thread.merged;
 }
@@ -135,6 +136,7 @@ void FragmentPipeline::fill_l1(const Thread& thread, std::uint64_t targets) {
         if ((targets >> first & 1) == 0) continue;
         const std::uint32_t line = l1_.put_kbuffer(thread.block, part);
         if (line == TextureCache::none) continue;
+        l1_.filled_at(line) = payloads_->fill(thread.task.slot, first);
         for (std::uint32_t pixel = 0; pixel < 4; ++pixel) {
             const float* from = payloads_->values(thread.task.slot, pixel) + std::size_t{first} * 4;
             std::copy(from, from + std::size_t{line_targets_} * 4, l1_.data(line, pixel, 0));
@@ -151,9 +153,9 @@ void FragmentPipeline::give_to_waiting(const Thread& from, std::uint64_t targets
         for (std::uint64_t left = shared; left != 0; left &= left - 1) {
             const auto target = static_cast<std::uint32_t>(std::countr_zero(left));
             for (std::uint32_t pixel = 0; pixel < 4; ++pixel)
-                payloads_->sample(thread.task.slot, pixel, target,
-                                  payloads_->values(slot, pixel) + std::size_t{target} * 4,
-                                  payloads_->version(slot, pixel, target), (*payloads_)[slot].last_read);
+                payloads_->sample(
+                    thread.task.slot, pixel, target, payloads_->values(slot, pixel) + std::size_t{target} * 4,
+                    payloads_->version(slot, pixel, target), {thread.looked_up, payloads_->fill(slot, target)});
         }
         thread.merged &= ~shared;
     }

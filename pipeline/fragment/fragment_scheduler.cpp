@@ -10,30 +10,30 @@ namespace {
 constexpr std::uint64_t progress_step = 4096;
 } // namespace
 
-FragmentScheduler::FragmentScheduler(sim::Context context, std::uint32_t pipes, std::uint32_t partitions,
-                                     const PassContext& pass, SchedulingPlan& plan, const FlushRule& flush,
-                                     QuadPayloads* payloads, std::atomic<std::uint64_t>* progress)
+FragmentScheduler::FragmentScheduler(sim::Context context, const FragmentSchedulerParams& params, std::uint32_t pipes,
+                                     std::uint32_t partitions, const PassContext& pass, SchedulingPlan& plan,
+                                     const FlushRule& flush, QuadPayloads* payloads,
+                                     std::atomic<std::uint64_t>* progress)
     : Component(std::move(context)),
+      params_(params),
       pass_(&pass),
       plan_(&plan),
       flush_(flush),
       payloads_(payloads),
       progress_(progress),
-      tracked_(payloads != nullptr || plan.guard != nullptr) {
+      tracked_(payloads != nullptr || plan.guard != nullptr || params.quads_until_store != 0),
+      side_buffer_(plan.guard != nullptr ? plan.guard->keys() : 0, plan.order_rule) {
     port_names_.reserve(pipes + partitions);
     for (std::uint32_t pipe = 0; pipe < pipes; ++pipe)
         pipes_out.emplace_back(*this, port_names_.emplace_back("pipe" + std::to_string(pipe) + "_out"));
     for (std::uint32_t rop = 0; tracked_ && rop < partitions; ++rop)
         commits_in.emplace_back(*this, port_names_.emplace_back("commits" + std::to_string(rop) + "_in"));
-    if (plan_->guard != nullptr) {
-        waiting_per_key_.resize(plan_->guard->keys());
-        key_seen_.resize(plan_->guard->keys());
-    }
 }
 
 void FragmentScheduler::begin_pass() {
     pixel_order_.assign(static_cast<std::size_t>(pass_->layout.width + 1) * (pass_->layout.rows() + 1), 0);
     if (plan_->tickets) area_order_.assign(pass_->layout.blocks(), 0);
+    if (plan_->guard != nullptr) unfinished_.assign(pixel_order_.size(), 0);
     batch_ = ~std::uint32_t{0};
 }
 
@@ -47,13 +47,17 @@ bool FragmentScheduler::take_commits() {
                 ++acknowledged_;
                 continue;
             }
-            if (plan_->guard != nullptr) plan_->guard->release(pass_->stream->quads[commit.quad], commit.mask);
+            if (plan_->guard != nullptr) {
+                const Quad& quad = pass_->stream->quads[commit.quad];
+                plan_->guard->release(quad, commit.mask);
+                count_unfinished(quad, commit.mask, -1);
+                offer(plan_->guard->key(quad));
+            }
             if (commit.slot != no_slot) {
                 stats_.service_interval.note(cycle() - (*payloads_)[commit.slot].dispatched);
                 payloads_->give_back(commit.slot);
             }
             --in_flight_;
-            rescan_ = true;
         }
     }
     return progress;
@@ -73,6 +77,8 @@ bool FragmentScheduler::choose_pipe(const Quad& quad) {
 }
 
 bool FragmentScheduler::can_dispatch(const QuadTask& task) {
+    if (params_.quads_until_store != 0 && touches_kbuffer(task) && in_flight_ >= params_.quads_until_store)
+        return false;
     if (payloads_ != nullptr && touches_kbuffer(task) && !payloads_->available()) {
         if (!std::exchange(out_of_slots_, true)) ++stats_.slot_waits;
         return false;
@@ -83,6 +89,30 @@ bool FragmentScheduler::can_dispatch(const QuadTask& task) {
         return false;
     }
     return choose_pipe(pass_->stream->quads[task.quad]);
+}
+
+void FragmentScheduler::count_unfinished(const Quad& quad, std::uint8_t pixels, std::int32_t by) {
+    for (std::uint32_t pixel = 0; pixel < 4; ++pixel)
+        if ((pixels >> pixel & 1) != 0) unfinished_[pass_->place(quad, pixel)] += by;
+}
+
+bool FragmentScheduler::overlaps_unfinished(const QuadTask& task) const {
+    const Quad& quad = pass_->stream->quads[task.quad];
+    for (std::uint32_t pixel = 0; pixel < 4; ++pixel)
+        if ((task.pixels() >> pixel & 1) != 0 && unfinished_[pass_->place(quad, pixel)] != 0) return true;
+    return false;
+}
+
+// Whether the quad at the input has to wait; counted once, under what held it first. Input comes in raster order, so
+// every quad in flight or waiting is older.
+bool FragmentScheduler::holds(const QuadTask& task, bool blocked) {
+    const bool ordered = plan_->order_rule && side_buffer_.waits(plan_->guard->key(pass_->stream->quads[task.quad]));
+    if (!blocked && !ordered) return false;
+    if (!std::exchange(classified_, true)) {
+        ++(overlaps_unfinished(task) ? stats_.true_conflicts : stats_.false_conflicts);
+        if (!blocked) ++stats_.order_waits;
+    }
+    return true;
 }
 
 // The samples of a group have no numbers here: the ROP counts them as they come, in this order.
@@ -118,34 +148,28 @@ void FragmentScheduler::dispatch(QuadTask task, bool guarded) {
     pipes_out[chosen_pipe_].send(task);
 }
 
+bool FragmentScheduler::free(const SideBuffer::Waiting& waiting) const {
+    return !plan_->guard->blocks(pass_->stream->quads[waiting.task.quad], waiting.task.pixels());
+}
+
+void FragmentScheduler::offer(std::uint32_t key) {
+    side_buffer_.offer(key, [this](const SideBuffer::Waiting& waiting) { return free(waiting); });
+}
+
+// Oldest first. The guard never frees a quad by a dispatch, so those that were not free before stay so, but for the
+// next one of the same key.
 bool FragmentScheduler::wake_waiting() {
-    if (side_buffer_.empty() || !rescan_) return false;
-    bool progress = false;
     std::uint32_t woken = 0;
-    ++epoch_;
-    rescan_ = false;
-    for (std::size_t at = 0; at < side_buffer_.size(); ++at) {
-        const Waiting& waiting = side_buffer_[at];
-        const Quad& quad = pass_->stream->quads[waiting.task.quad];
-        const auto key = plan_->guard->key(quad);
-        if (std::exchange(key_seen_[key], epoch_) == epoch_ && plan_->order_rule)
-            continue; // an older quad of this key goes first
-        if (plan_->guard->check(quad, waiting.task.pixels()) != Conflict::none) continue;
-        if (woken == plan_->wakes || !can_dispatch(waiting.task)) {
-            rescan_ = true;
-            break;
-        }
+    for (; woken < plan_->wakes; ++woken) {
+        const SideBuffer::Waiting* oldest =
+            side_buffer_.oldest([this](const SideBuffer::Waiting& waiting) { return free(waiting); });
+        if (oldest == nullptr || !can_dispatch(oldest->task)) break;
+        const SideBuffer::Waiting waiting = side_buffer_.take_oldest();
         stats_.residence.note(cycle() - waiting.since);
-        --waiting_per_key_[key];
         dispatch(waiting.task, true);
-        side_buffer_.erase(side_buffer_.begin() + static_cast<std::ptrdiff_t>(at));
-        ++woken;
-        progress = true;
-        // Restart the order test: the quad behind the one that left may now be the oldest of its key.
-        ++epoch_;
-        at = static_cast<std::size_t>(-1);
+        offer(waiting.key);
     }
-    return progress;
+    return woken != 0;
 }
 
 bool FragmentScheduler::at_batch_boundary(const QuadTask& task) const {
@@ -225,20 +249,15 @@ sim::Activity FragmentScheduler::accept(bool progress) {
             return progress ? sim::Activity::busy : sim::Activity::memory;
         const Quad& quad = pass_->stream->quads[input->quad];
         const bool guarded = plan_->guard != nullptr && touches_kbuffer(*input);
-        Conflict conflict = guarded ? plan_->guard->check(quad, input->pixels()) : Conflict::none;
-        const bool ordered = guarded && plan_->order_rule && waiting_per_key_[plan_->guard->key(quad)] != 0;
-        if (conflict != Conflict::none || ordered) {
+        if (guarded && holds(*input, plan_->guard->blocks(quad, input->pixels()))) {
             if (side_buffer_.size() >= plan_->side_buffer) {
                 if (!std::exchange(overflowing_, true)) ++stats_.overflow_stalls;
                 return progress ? sim::Activity::busy : sim::Activity::hazard;
             }
-            if (conflict == Conflict::true_conflict) ++stats_.true_conflicts;
-            if (conflict == Conflict::false_conflict) ++stats_.false_conflicts;
-            if (conflict == Conflict::none) ++stats_.order_waits;
-            Waiting waiting{quads_in.receive(), cycle()};
+            SideBuffer::Waiting waiting{quads_in.receive(), plan_->guard->key(quad), cycle()};
             count_order(waiting.task);
-            ++waiting_per_key_[plan_->guard->key(quad)];
-            side_buffer_.push_back(waiting);
+            count_unfinished(quad, waiting.task.pixels(), 1);
+            side_buffer_.insert(waiting);
             ++stats_.inserted;
             stats_.waiting.note(side_buffer_.size());
             stats_.waiting_max.note(side_buffer_.size());
@@ -247,13 +266,14 @@ sim::Activity FragmentScheduler::accept(bool progress) {
             QuadTask task = quads_in.receive();
             if (task.mask == 0) ++stats_.bypassed;
             count_order(task);
+            if (guarded) count_unfinished(quad, task.pixels(), 1);
             dispatch(task, guarded);
         }
         const std::uint32_t triangle = quad.triangle;
         batch_ =
             flush_.every_triangles != 0 ? triangle / flush_.every_triangles : pass_->stream->triangles[triangle].draw;
         progress = true;
-        overflowing_ = false;
+        overflowing_ = classified_ = false;
     }
     if (progress) return sim::Activity::busy;
     if (!side_buffer_.empty()) return sim::Activity::hazard;

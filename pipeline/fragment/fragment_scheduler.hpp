@@ -6,9 +6,11 @@
 // sections 7.1 (flush rule) and 7.2 (steps 1-5); Bavoil 2007, section 4.3.1.
 #pragma once
 
+#include "pipeline/fragment/fragment_scheduler_params.hpp"
 #include "pipeline/fragment/messages.hpp"
 #include "pipeline/fragment/pass_context.hpp"
 #include "pipeline/fragment/quad_payloads.hpp"
+#include "pipeline/fragment/side_buffer.hpp"
 #include "sim/channel.hpp"
 #include "sim/described.hpp"
 #include "sim/stats.hpp"
@@ -31,12 +33,17 @@ struct FragmentSchedulerStats {
             sim::field<&S::quads>("Quads dispatched").unit("quads"),
             sim::field<&S::fragments>("Living fragments dispatched").unit("fragments"),
             sim::field<&S::bypassed>("Quads without a living fragment, which touch no pixel state").unit("quads"),
-            sim::field<&S::true_conflicts>("Quads held because a pixel of theirs was in flight").unit("quads"),
-            sim::field<&S::false_conflicts>("Quads held only by the guard's granularity, its hash or its order rule")
+            sim::field<&S::true_conflicts>(
+                "Quads held at their first lookup, of which a pixel belongs to an older quad in flight or waiting")
+                .unit("quads"),
+            sim::field<&S::false_conflicts>(
+                "Quads held at their first lookup only by the guard's granularity, its hash or its order rule")
                 .unit("quads"),
             sim::field<&S::inserted>("Quads put into the side buffer").unit("quads"),
             sim::field<&S::overflow_stalls>("Times the rasterizer was stalled by a full side buffer").unit("stalls"),
-            sim::field<&S::order_waits>("Quads held because an older quad of their key was waiting").unit("quads"),
+            sim::field<&S::order_waits>(
+                "Of the quads held, those whose area was free, behind an older quad of their key that was waiting")
+                .unit("quads"),
             sim::field<&S::slot_waits>("Times dispatch stopped because no payload slot was free").unit("stalls"),
             sim::field<&S::reorder_waits>("Times dispatch stopped because the reorder buffer was full").unit("stalls"),
             sim::field<&S::flushes>("Flushes between batches").unit("flushes"),
@@ -60,28 +67,29 @@ class FragmentScheduler final : public sim::Component {
     /// @param plan what guards dispatch; must outlive the scheduler
     /// @param payloads null when no shader reads the k-buffer
     /// @param progress counts dispatched quads, a few thousand at a time, for whoever watches the run
-    FragmentScheduler(sim::Context context, std::uint32_t pipes, std::uint32_t partitions, const PassContext& pass,
-                      SchedulingPlan& plan, const FlushRule& flush, QuadPayloads* payloads,
-                      std::atomic<std::uint64_t>* progress = nullptr);
+    FragmentScheduler(sim::Context context, const FragmentSchedulerParams& params, std::uint32_t pipes,
+                      std::uint32_t partitions, const PassContext& pass, SchedulingPlan& plan, const FlushRule& flush,
+                      QuadPayloads* payloads, std::atomic<std::uint64_t>* progress = nullptr);
 
     const FragmentSchedulerStats& stats() const { return stats_; }
     /// Forgets the raster order at every pixel; before each pass that starts from a cleared k-buffer.
     void begin_pass();
 
   private:
-    struct Waiting {
-        QuadTask task;
-        sim::Cycle since = 0;
-    };
     enum class FlushState : std::uint8_t { none, draining, commanding, acknowledging, covering };
 
     sim::Activity tick() override;
     bool take_commits();
+    bool free(const SideBuffer::Waiting& waiting) const;
+    void offer(std::uint32_t key);
     bool wake_waiting();
     sim::Activity accept(bool progress);
     bool can_dispatch(const QuadTask& task);
     void dispatch(QuadTask task, bool guarded);
     bool choose_pipe(const Quad& quad);
+    bool holds(const QuadTask& task, bool blocked);
+    bool overlaps_unfinished(const QuadTask& task) const;
+    void count_unfinished(const Quad& quad, std::uint8_t pixels, std::int32_t by);
     void count_order(QuadTask& task);
     bool at_batch_boundary(const QuadTask& task) const;
     sim::Cycle cover_cycles(std::uint32_t from_draw, std::uint32_t to_draw) const;
@@ -90,6 +98,7 @@ class FragmentScheduler final : public sim::Component {
         return task.mask != 0 && pass_->end != FragmentEnd::depth_colour;
     }
 
+    FragmentSchedulerParams params_;
     const PassContext* pass_;
     SchedulingPlan* plan_;
     FlushRule flush_;
@@ -100,13 +109,13 @@ class FragmentScheduler final : public sim::Component {
     FragmentSchedulerStats stats_;
     std::vector<std::uint32_t> pixel_order_; ///< fragments accepted so far, per pixel
     std::vector<std::uint32_t> area_order_;  ///< quads accepted so far, per block or tile, where locks need it
-    std::vector<Waiting> side_buffer_;       ///< oldest first
-    std::vector<std::uint32_t> waiting_per_key_;
-    std::vector<std::uint32_t> key_seen_; ///< epoch of the last scan that met this key
-    std::uint32_t epoch_ = 0;
-    bool rescan_ = false; ///< something was released since the last fruitless scan
+    /// Quads accepted whose stores the next reader cannot see yet, per pixel; with a guard only. No hardware: it tells
+    /// true conflicts from false ones.
+    std::vector<std::int32_t> unfinished_;
+    SideBuffer side_buffer_;
     std::uint32_t next_pipe_ = 0;
     std::uint32_t chosen_pipe_ = 0; ///< ready at this edge, found by choose_pipe()
+    bool classified_ = false;       ///< the quad at the input has been held, and counted under its cause
     // The present stall has been counted.
     bool overflowing_ = false, out_of_slots_ = false, out_of_places_ = false;
     std::uint32_t sequence_ = 0;

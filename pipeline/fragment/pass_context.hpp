@@ -48,6 +48,7 @@ struct PassContext {
     DepthFormat depth_format = DepthFormat::d24; ///< of the surface that the pass tests and writes
     std::vector<ShaderCost> shader_costs;        ///< by draw
     const ScreenPass* screen = nullptr;          ///< a full-screen pass, whose shader counts for every quad
+    std::uint32_t atomic_latency = 0;            ///< cycles that each shader waits for an atomic before it is done
     bool textures = false;
     /// A task is a group of sample quads: shaded once, taken apart in the ROP. Else each sample quad is a task.
     bool multisampled = false;

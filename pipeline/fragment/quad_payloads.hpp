@@ -15,8 +15,9 @@ namespace pipeline {
 
 struct QuadPayload {
     sim::Cycle dispatched = 0;
-    sim::Cycle first_read = 0; ///< core cycle of the earliest sample
-    sim::Cycle last_read = 0;  ///< core cycle of the latest sample
+    sim::Cycle first_read = 0; ///< t_rd of the render target that was read first
+    sim::Cycle last_read = 0;  ///< and of the one that was read last
+    sim::Cycle last_fill = 0;  ///< latest array read that supplied any of the values
 };
 
 class QuadPayloads {
@@ -25,7 +26,8 @@ class QuadPayloads {
         : floats_(floats_per_pixel),
           payloads_(slots),
           values_(static_cast<std::size_t>(slots) * 4 * floats_per_pixel),
-          versions_(values_.size() / 4) {
+          versions_(values_.size() / 4),
+          fills_(slots * std::size_t{floats_per_pixel / 4}) {
         for (std::uint32_t slot = slots; slot > 0; --slot) free_.push_back(slot - 1);
     }
 
@@ -48,15 +50,29 @@ class QuadPayloads {
         return versions_[(static_cast<std::size_t>(slot) * 4 + pixel) * (floats_ / 4) + target];
     }
 
-    /// Copies one render target of one pixel into the slot, with its version and the time it was sampled.
+    /// Array read that supplied this render target.
+    sim::Cycle fill(std::uint32_t slot, std::uint32_t target) const {
+        return fills_[slot * std::size_t{floats_ / 4} + target];
+    }
+
+    /// When a value was asked for, and when the array was read that supplied it: t_look and t_fill. A miss is asked for
+    /// before its fill, a hit after it; the value is that of the later of the two, or older.
+    struct ReadTimes {
+        sim::Cycle look = 0;
+        sim::Cycle fill = 0;
+    };
+    /// Copies one render target of one pixel into the slot, with its version and times.
     void sample(std::uint32_t slot, std::uint32_t pixel, std::uint32_t target, const float* four,
-                PixelVersion version_read, sim::Cycle at) {
+                PixelVersion version_read, ReadTimes times) {
         float* to = values(slot, pixel) + std::size_t{target} * 4;
         for (int channel = 0; channel < 4; ++channel) to[channel] = four[channel];
         version(slot, pixel, target) = version_read;
+        fills_[slot * std::size_t{floats_ / 4} + target] = times.fill;
         QuadPayload& payload = payloads_[slot];
-        payload.first_read = std::min(payload.first_read, at);
-        payload.last_read = std::max(payload.last_read, at);
+        const sim::Cycle read = std::max(times.look, times.fill);
+        payload.first_read = std::min(payload.first_read, read);
+        payload.last_read = std::max(payload.last_read, read);
+        payload.last_fill = std::max(payload.last_fill, times.fill);
     }
 
   private:
@@ -64,6 +80,7 @@ class QuadPayloads {
     std::vector<QuadPayload> payloads_;
     std::vector<float> values_;
     std::vector<PixelVersion> versions_;
+    std::vector<sim::Cycle> fills_; ///< by slot and render target
     std::vector<std::uint32_t> free_;
 };
 

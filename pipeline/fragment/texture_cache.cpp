@@ -44,7 +44,7 @@ std::uint32_t TextureCache::victim(std::uint64_t tag) {
         if (lines_[at].pending) continue;
         if (best == none || lines_[at].used < lines_[best].used) best = static_cast<std::uint32_t>(at);
     }
-    if (best != none) lines_[best] = {tag, ++clock_, generation_, false};
+    if (best != none) lines_[best] = {tag, ++clock_, generation_, false, 0};
     return best;
 }
 

@@ -63,6 +63,9 @@ class TextureCache {
         return versions_[index * std::size_t{4} + pixel];
     }
 
+    /// When the array behind the cache was read for this line.
+    sim::Cycle& filled_at(std::uint32_t index) { return lines_[index].filled_at; }
+
     void drop_kbuffer_lines();
     void drop_kbuffer_block(std::uint32_t block, std::uint32_t parts);
     /// Changes whenever lines were dropped: a fill asked for earlier must not be kept.
@@ -74,6 +77,7 @@ class TextureCache {
         std::uint64_t used = 0;
         std::uint32_t generation = 0;
         bool pending = false;
+        sim::Cycle filled_at = 0; ///< of a line of the k-buffer
     };
     static constexpr std::uint64_t kbuffer_tag(std::uint32_t block, std::uint32_t part) {
         return (static_cast<std::uint64_t>(block) * 64 + part) << 1U | 1U;

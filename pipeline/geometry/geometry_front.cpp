@@ -91,7 +91,7 @@ void GeometryFront::link_vertex_path(const GeometryParams& params) {
     connect(vertex_reuse_.primitives_out, primitive_assembly_.primitives_in,
             {1, assembled, params.primitive_assembly.primitives_in_flight});
     connect(primitive_assembly_.primitives_out, clip_cull_.primitives_in, link_of(assembled));
-    connect(clip_cull_.triangles_out, triangle_setup_.triangles_in, link_of(1));
+    connect(clip_cull_.triangles_out, triangle_setup_.triangles_in, {1, 1, params.triangle_setup.queue});
 }
 
 void GeometryFront::attach(MemorySystem& memory) {

@@ -21,7 +21,7 @@ namespace pipeline {
 
 struct IndexFetchParams {
     std::uint32_t line = 64;
-    std::uint32_t lines_in_flight = 32;
+    std::uint32_t lines_in_flight = 72;
     double bytes_per_clk = 24;
     std::uint32_t primitives_per_clk = 1;
 

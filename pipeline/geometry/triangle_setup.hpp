@@ -1,6 +1,7 @@
 // Triangle setup: computes edge and plane equations, one triangle at a time.
 //
-// Modelled: a fixed time per triangle.
+// Modelled: a fixed time per triangle; a queue in front, which fills while triangles come and feeds it while the stages
+// before drop what faces away or lies outside.
 // Not modelled: what is computed.
 // Source: specification 004, section 7 (setup_cycles_per_tri).
 #pragma once
@@ -13,10 +14,13 @@ namespace pipeline {
 
 struct TriangleSetupParams {
     std::uint32_t cycles_per_triangle = 2;
+    std::uint32_t queue = 64;
 
     static constexpr auto fields() {
+        using P = TriangleSetupParams;
         return std::tuple{
-            sim::field<&TriangleSetupParams::cycles_per_triangle>("Time of a triangle").unit("cycles").range(1, 10000)};
+            sim::field<&P::cycles_per_triangle>("Time of a triangle").unit("cycles").range(1, 10000),
+            sim::field<&P::queue>("Triangles that wait in front of it").unit("triangles").range(2, 65536)};
     }
 };
 static_assert(sim::fully_described<TriangleSetupParams>);

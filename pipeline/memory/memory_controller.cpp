@@ -9,14 +9,16 @@ namespace {
 
 constexpr std::uint32_t largest_request = 4096; ///< bytes; see MemoryRequest
 constexpr std::uint32_t most_draws = 1U << 24U; ///< of a frame
+constexpr std::size_t most_rops = 254;          ///< ports are numbered in a byte
 
 sim::Time time_of(DramChannel::Fine fine) {
     return (fine + DramChannel::fine_per_time - 1) / DramChannel::fine_per_time;
 }
 
-// Reads accepted, one a cycle, and not answered: those that wait for the bus, and those within the latency behind it.
-std::uint32_t answers_in_flight(const MemoryControllerParams& params) {
-    return params.queue + params.dram.latency + params.dram.row_miss + params.jitter_cycles + 2;
+// What was accepted, one a cycle, and not answered: requests that wait for the bus, and reads on their way back.
+std::uint32_t answers_of_hub(const MemoryControllerParams& params, sim::Time core, sim::Time own) {
+    const sim::Time back = (sim::Time{params.return_latency} + params.jitter_cycles + 1) * core;
+    return params.queue + params.write_queue + static_cast<std::uint32_t>(back / own) + 2;
 }
 
 } // namespace
@@ -25,66 +27,88 @@ MemoryController::MemoryController(sim::Context context, const Params& params, c
     : Component(std::move(context)),
       params_(params),
       share_(share),
-      channel_(params.dram, share.bandwidth, clock().period, params.queue),
+      core_period_(share.core_period != 0 ? share.core_period : clock().period),
+      channel_(params.dram, share.bandwidth, clock().period, params.write_queue),
       random_(simulation().random_for(name())),
-      ports_{Port{&hub_in, &hub_out, FixedQueue<Answer>(answers_in_flight(params))},
-             Port{&rop_in, &rop_out, FixedQueue<Answer>(answers_in_flight(params))}},
-      waiting_(params.queue) {
-    for (std::uint32_t id = params.queue; id > 0; --id) free_ids_.push_back(id - 1);
+      waiting_(std::size_t{params.queue} + params.write_queue) {
+    ports_.push_back({&hub_in, &hub_out, FixedQueue<Answer>(answers_of_hub(params, core_period_, clock().period))});
+    for (auto id = static_cast<std::uint32_t>(waiting_.size()); id > 0; --id) free_ids_.push_back(id - 1);
+}
+
+MemoryController::RopPort& MemoryController::add_rop() {
+    CHECK_MSG(ports_.size() <= most_rops, name());
+    RopPort& port = rops_.emplace_back(*this);
+    // What waits for the bus, and as much that has crossed it and waits for room.
+    ports_.push_back({&port.requests_in, &port.responses_out,
+                      FixedQueue<Answer>(2 * static_cast<std::uint32_t>(waiting_.size()) + 2)});
+    return port;
 }
 
 sim::Cycle MemoryController::unloaded_latency(std::uint32_t bytes) const {
-    return clock().cycle_at(time_of(channel_.unloaded_latency(bytes)));
+    return clock().cycle_at(time_of(channel_.unloaded_latency(bytes)) + params_.return_latency * core_period_);
 }
 
-std::uint64_t MemoryController::local_address(std::uint64_t address, std::size_t port) const {
-    // The tiles of a ROP partition are about every partitions-th one of a surface.
-    if (port == rop) return address / share_.partitions;
+// One map for every client: the blocks of this partition, one behind the other.
+std::uint64_t MemoryController::local_address(std::uint64_t address) const {
     const std::uint64_t block = address / share_.interleave;
     return block / share_.partitions * share_.interleave + address % share_.interleave;
 }
 
 void MemoryController::book(const MemoryRequest& request) {
     const auto client = static_cast<std::size_t>(request.client);
+    const std::uint32_t bytes = channel_.burst_bytes_of(request.address, request.bytes);
     ++stats_.requests;
     ++(request.write ? stats_.writes : stats_.reads);
-    stats_.bytes[client] += request.bytes;
+    stats_.bytes[client] += bytes;
     if (request.draw >= draw_bytes_.size()) draw_bytes_.resize(request.draw + 1);
-    draw_bytes_[request.draw][client] += request.bytes;
+    draw_bytes_[request.draw][client] += bytes;
 }
 
 bool MemoryController::answer(Port& port) {
     bool progress = false;
     while (!port.answers.empty() && port.answers.front().ready <= cycle() && port.responses->ready()) {
-        port.responses->send({port.answers.front().tag});
+        const Answer& answer = port.answers.front();
+        const sim::Time left = answer.back - std::min(answer.back, now());
+        port.responses->send({answer.tag, static_cast<std::uint32_t>((left + core_period_ - 1) / core_period_)});
         port.answers.pop();
         progress = true;
     }
     return progress;
 }
 
-// One request a cycle, from the ports in turn.
+// One request a cycle: the crossbar and the ROP partitions take turns, and so do these among themselves.
 bool MemoryController::accept() {
-    if (free_ids_.empty()) return false;
-    for (std::size_t i = 0; i < ports_.size(); ++i) {
-        const std::size_t index = (turn_ + i) % ports_.size();
-        Port& port = ports_[index];
-        const bool room = port.answers.size() + channel_.waiting() < port.answers.capacity();
-        if (!port.requests->connected() || !room) continue;
-        const MemoryRequest* request = port.requests->peek();
-        if (request == nullptr) continue;
-        CHECK(request->bytes >= 1 && request->bytes <= largest_request && request->draw < most_draws);
-        const std::uint32_t id = free_ids_.back();
-        free_ids_.pop_back();
-        waiting_[id] = {request->tag, static_cast<std::uint8_t>(index), request->write};
-        channel_.enqueue(local_address(request->address, index), request->bytes, id, now());
-        stats_.queued.note(channel_.waiting());
-        book(*request);
-        port.requests->pop();
-        turn_ = (index + 1) % ports_.size();
+    const bool turn = hub_first_;
+    if (turn && accept_from(hub)) {
+        hub_first_ = false;
         return true;
     }
-    return false;
+    for (std::size_t i = 1, index = rop_turn_; i < ports_.size();
+         ++i, index = index + 1 < ports_.size() ? index + 1 : 1) {
+        if (!accept_from(index)) continue;
+        rop_turn_ = index + 1 < ports_.size() ? index + 1 : 1;
+        hub_first_ = true;
+        return true;
+    }
+    return !turn && accept_from(hub);
+}
+
+bool MemoryController::accept_from(std::size_t index) {
+    Port& port = ports_[index];
+    if (!port.requests->connected() || port.answers.size() + channel_.waiting() >= port.answers.capacity())
+        return false;
+    const MemoryRequest* request = port.requests->peek();
+    if (request == nullptr) return false;
+    if (channel_.waiting(request->write) >= (request->write ? params_.write_queue : params_.queue)) return false;
+    CHECK(request->bytes >= 1 && request->bytes <= largest_request && request->draw < most_draws);
+    const std::uint32_t id = free_ids_.back();
+    free_ids_.pop_back();
+    waiting_[id] = {request->tag, static_cast<std::uint8_t>(index), request->write, request->notify};
+    channel_.enqueue(local_address(request->address), request->bytes, request->write, id, now());
+    stats_.queued.note(channel_.waiting());
+    book(*request);
+    port.requests->pop();
+    return true;
 }
 
 // Commits the transfers that start before the next edge.
@@ -95,14 +119,25 @@ bool MemoryController::transfer() {
         ++(transfer->row_hit ? stats_.row_hits : stats_.row_misses);
         free_ids_.push_back(transfer->id);
         progress = true;
-        if (request.write) continue;
-        FixedQueue<Answer>& answers = ports_[request.port].answers;
-        sim::Cycle ready = clock().cycle_at(time_of(transfer->done));
-        if (params_.jitter_cycles > 0) ready += random_.below(params_.jitter_cycles + std::uint64_t{1});
-        if (!answers.empty()) ready = std::max(ready, answers.back().ready);
-        answers.push({request.tag, ready});
+        if (!request.write || request.notify) note_answer(request, *transfer);
     }
+    const DramEvents& events = channel_.events();
+    stats_.turnarounds = {events.turnarounds};
+    stats_.activation_waits = {events.activation_waits};
+    stats_.refreshes = {events.refreshes};
     return progress;
+}
+
+void MemoryController::note_answer(const Waiting& request, const DramChannel::Transfer& transfer) {
+    Port& port = ports_[request.port];
+    Answer answer{request.tag, clock().cycle_at(time_of(transfer.end)), 0};
+    if (!request.write) {
+        sim::Cycle way = params_.return_latency;
+        if (params_.jitter_cycles > 0) way += random_.below(params_.jitter_cycles + std::uint64_t{1});
+        answer.back = port.back = std::max(port.back, time_of(transfer.end) + way * core_period_);
+    }
+    if (request.port == hub) answer.ready = clock().cycle_at(answer.back);
+    port.answers.push(answer);
 }
 
 sim::Activity MemoryController::wait() {
@@ -127,8 +162,8 @@ sim::Activity MemoryController::wait() {
 }
 
 sim::Activity MemoryController::tick() {
-    bool progress = answer(ports_[hub]);
-    progress |= answer(ports_[rop]);
+    bool progress = false;
+    for (Port& port : ports_) progress |= answer(port);
     progress |= accept();
     progress |= transfer();
     return progress ? sim::Activity::busy : wait();

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <fmt/format.h>
 
 namespace pipeline {
@@ -12,9 +13,18 @@ namespace {
 
 constexpr sim::Cycle port_latency = 1;   ///< between a unit and its end of the crossbar, or its partition
 constexpr std::uint32_t port_buffer = 8; ///< requests that wait at a port
+// The ways of the ROP partitions to one channel are full together: each holds its time in requests of this size.
+constexpr std::uint32_t rop_request = 64; ///< bytes
 
 sim::ChannelConfig link_of(sim::Cycle latency, std::uint32_t width) {
     return {latency, width, static_cast<std::uint32_t>(width * (latency + 1)) + port_buffer};
+}
+
+// The way to a channel, one request a cycle, holds what the channel moves in that time, were all requests of `bytes`.
+sim::ChannelConfig way_to(const MemoryController::Share& share, sim::Cycle latency, std::uint32_t bytes) {
+    const double moved = static_cast<double>(latency * share.core_period) * share.bandwidth * 1e-3;
+    const double on_the_way = std::min(std::ceil(moved / bytes), static_cast<double>(latency)) + 1;
+    return {latency, 1, static_cast<std::uint32_t>(on_the_way) + port_buffer};
 }
 
 } // namespace
@@ -24,10 +34,15 @@ MemorySystem::MemorySystem(sim::Simulation& simulation, const sim::Clock& core, 
     if (!std::has_single_bit(params.interleave))
         throw sim::InputError(fmt::format("memory.interleave: expected a power of two, got {}", params.interleave));
     if (params.clock_mhz > 0) clock_ = &simulation.add_clock("memory", params.clock_mhz);
-    const MemoryController::Share share{params.partitions, params.interleave, params.bandwidth / params.partitions};
+    if (!std::has_single_bit(params.controller.dram.burst_bytes) ||
+        params.controller.dram.burst_bytes > params.interleave)
+        throw sim::InputError(fmt::format(
+            "memory.controller.dram.burst_bytes: expected a power of two up to memory.interleave ({}), got {}",
+            params.interleave, params.controller.dram.burst_bytes));
+    share_ = {params.partitions, params.interleave, params.bandwidth / params.partitions, core.period};
     for (std::uint32_t i = 0; i < params.partitions; ++i)
         controllers_.push_back(std::make_unique<MemoryController>(
-            simulation.context(fmt::format("memory.partition{}", i), *clock_), params.controller, share));
+            simulation.context(fmt::format("memory.partition{}", i), *clock_), params.controller, share_));
 }
 
 std::uint32_t MemorySystem::partition_of(std::uint64_t address) const {
@@ -39,7 +54,9 @@ MemoryHub& MemorySystem::hub() {
     hub_ = std::make_unique<MemoryHub>(simulation_.context("memory.hub", core_), params_.hub, params_.partitions,
                                        params_.interleave);
     for (std::uint32_t i = 0; i < params_.partitions; ++i) {
-        connect(hub_->partition(i).requests_out, controllers_[i]->hub_in, link_of(params_.hub.latency, 1));
+        connect(hub_->partition(i).requests_out, controllers_[i]->hub_in,
+                way_to(share_, params_.hub.latency + params_.controller.request_latency,
+                       params_.controller.dram.burst_bytes));
         connect(controllers_[i]->hub_out, hub_->partition(i).responses_in, link_of(params_.hub.latency, 1));
     }
     return *hub_;
@@ -51,15 +68,20 @@ void MemorySystem::attach(sim::Out<MemoryRequest>& requests, sim::In<MemoryRespo
     connect(port.responses_out, responses, link_of(port_latency, params_.hub.requests_per_clk));
 }
 
-void MemorySystem::attach_rop(std::uint32_t partition, sim::Out<MemoryRequest>& requests,
-                              sim::In<MemoryResponse>& responses) {
-    CHECK(partition < params_.partitions);
-    connect(requests, controllers_[partition]->rop_in, link_of(port_latency, 1));
-    connect(controllers_[partition]->rop_out, responses, link_of(port_latency, 1));
+void MemorySystem::attach_rop(std::uint32_t rop, std::deque<sim::Out<MemoryRequest>>& requests,
+                              std::deque<sim::In<MemoryResponse>>& responses) {
+    CHECK(rop == rops_ && requests.size() == params_.partitions && responses.size() == params_.partitions);
+    ++rops_;
+    for (std::uint32_t i = 0; i < params_.partitions; ++i) {
+        MemoryController::RopPort& port = controllers_[i]->add_rop();
+        connect(requests[i], port.requests_in,
+                way_to(share_, port_latency + params_.controller.request_latency, rop_request));
+        connect(port.responses_out, responses[i], link_of(port_latency, 1));
+    }
 }
 
 sim::Cycle MemorySystem::unloaded_rop_latency(std::uint32_t bytes) const {
-    return 2 * port_latency + controllers_.front()->unloaded_latency(bytes);
+    return 2 * port_latency + params_.controller.request_latency + controllers_.front()->unloaded_latency(bytes);
 }
 
 sim::Cycle MemorySystem::unloaded_latency(std::uint32_t bytes) const {

@@ -1,7 +1,8 @@
 // Everything behind the units' memory ports: the partitions, and the crossbar if a unit needs it.
 //
-// A client of the crossbar calls attach(); a ROP partition, which sits in front of "its" memory partition, calls
-// attach_rop(). A client must always be able to take the answers to what it asked for, or the memory behind it stops.
+// A client of the crossbar calls attach(); a ROP partition, which has wires of its own to every memory partition, calls
+// attach_rop(). Both see one map of addresses: `interleave` consecutive bytes lie in one partition, the next ones in
+// the next. A client must always be able to take the answers to what it asked for, or the memory behind it stops.
 #pragma once
 
 #include "pipeline/memory/memory_controller.hpp"
@@ -19,8 +20,10 @@ class MemorySystem {
 
     /// Links a client to the crossbar. A request of such a client must lie within one interleave block.
     void attach(sim::Out<MemoryRequest>& requests, sim::In<MemoryResponse>& responses);
-    /// Links a ROP partition to its memory partition; every address counts as lying there.
-    void attach_rop(std::uint32_t partition, sim::Out<MemoryRequest>& requests, sim::In<MemoryResponse>& responses);
+    /// Links ROP partition `rop` to all memory partitions: element i of each deque to partition i. A request must lie
+    /// within one interleave block of that partition. ROP partitions are attached in the order of their numbers.
+    void attach_rop(std::uint32_t rop, std::deque<sim::Out<MemoryRequest>>& requests,
+                    std::deque<sim::In<MemoryResponse>>& responses);
 
     std::uint32_t partitions() const { return params_.partitions; }
     /// The partition in which `address` lies.
@@ -48,6 +51,8 @@ class MemorySystem {
     const sim::Clock& core_;
     const sim::Clock* clock_;
     MemoryParams params_;
+    MemoryController::Share share_;
+    std::uint32_t rops_ = 0; ///< attached
     std::unique_ptr<MemoryHub> hub_;
     std::vector<std::unique_ptr<MemoryController>> controllers_;
 };

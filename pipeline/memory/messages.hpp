@@ -27,7 +27,7 @@ struct MemoryRequest {
 /// the order in which bursts crossed the bus; the data of a read are `delay` cycles away still.
 struct MemoryResponse {
     std::uint32_t tag = 0;
-    std::uint32_t delay = 0; ///< cycles of the partition's clock
+    std::uint32_t delay = 0; ///< cycles of the core clock
 };
 
 } // namespace pipeline

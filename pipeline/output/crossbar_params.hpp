@@ -1,4 +1,4 @@
-// Parameters of the crossbar to the ROP partitions; the unit is in crossbar.hpp.
+// Parameters of the crossbar to the ROP groups; the unit is in crossbar.hpp.
 #pragma once
 
 #include "sim/described.hpp"
@@ -16,11 +16,11 @@ struct CrossbarParams {
     static constexpr auto fields() {
         using P = CrossbarParams;
         return std::tuple{
-            sim::field<&P::bytes_per_clk>("Bytes per cycle to one ROP partition").unit("bytes").range(1, 4096),
+            sim::field<&P::bytes_per_clk>("Bytes per cycle to one ROP group").unit("bytes").range(1, 4096),
             sim::field<&P::latency>("Cycles from one side to the other, in both directions")
                 .unit("cycles")
                 .range(1, 1000),
-            sim::field<&P::queue>("Quads between the crossbar and one partition").unit("quads").range(1, 4096)};
+            sim::field<&P::queue>("Quads that wait for the link to one ROP group").unit("quads").range(1, 4096)};
     }
 };
 static_assert(sim::fully_described<CrossbarParams>);

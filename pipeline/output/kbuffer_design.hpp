@@ -6,7 +6,9 @@
 
 #include "pipeline/fragment/dispatch_guard.hpp"
 #include "pipeline/frame.hpp"
+#include "pipeline/output/added_hardware.hpp"
 #include "pipeline/output/kbuffer.hpp"
+#include "pipeline/output/kbuffer_options.hpp"
 #include "sim/described.hpp"
 
 #include <functional>
@@ -17,69 +19,6 @@
 #include <vector>
 
 namespace pipeline {
-
-/// Where the program runs.
-enum class UpdateSite : std::uint8_t {
-    fragment_shader, ///< the shader reads the pixel as a texture and stores all entries
-    blender,         ///< a unit in the ROP reads, modifies and writes
-    passes,          ///< nowhere: geometry passes with fixed-function tests
-    lists,           ///< in a pass behind the geometry, which only keeps all fragments
-};
-
-/// When a store becomes visible to a texture read.
-enum class Visibility : std::uint8_t { rop_cache, writeback, never_until_flush };
-/// What drops stale k-buffer lines from the texture caches.
-enum class TextureCoherence : std::uint8_t { none, invalidate_on_draw, invalidate_on_write };
-enum class DispatchPolicy : std::uint8_t { any_pipe, tile_affinity };
-/// Order in which quads leave the fragment stage.
-enum class Retirement : std::uint8_t { in_order, out_of_order };
-/// Who may be inside the part of a shader that reads, modifies and stores a pixel.
-enum class CriticalSection : std::uint8_t {
-    none,
-    ordered,   ///< one quad at a time, in the order of the primitives
-    unordered, ///< one quad at a time, whoever comes first
-};
-/// What is locked for one critical section, or tested by an interlock in the ROP.
-enum class LockArea : std::uint8_t {
-    pixel, ///< the living pixels of the quad
-    quad,  ///< its 2x2 block
-    tile,  ///< the 4x4 tile that it lies in
-};
-/// What a unit of the ROP does with a fragment.
-enum class BlendUnit : std::uint8_t {
-    program,    ///< runs the modify program
-    peel,       ///< compares with all depths at once and shifts: nearest-k only
-    atomic_min, ///< one atomic minimum after the other, each with what the one before displaced
-};
-/// How the ROP finds out that a quad's pixel is inside its unit.
-enum class InterlockTest : std::uint8_t {
-    exact,  ///< compares with every quad inside (associative memory)
-    hashed, ///< counters by a hash of the pixel
-    tile,   ///< a ticket per 4x4 tile: its next quad waits for all quads of the tile inside
-};
-/// What a fragment is compared with before it is shaded, to be dropped when no entry can take it.
-enum class EarlyReject : std::uint8_t {
-    none,
-    tile,  ///< the farthest last entry of its 4x4 tile
-    pixel, ///< the last entry of its pixel
-};
-/// What a unit of the ROP does with a quad whose pixel is inside its pipeline.
-enum class BlendInterlock : std::uint8_t {
-    stall,   ///< waits until the older result is written
-    forward, ///< takes the older result from the pipeline's end
-    none,    ///< reads the stale value (hazards)
-};
-/// How a peeling pass tells the layers it has already captured.
-enum class PeelRule : std::uint8_t {
-    exact, ///< by depth, then by submission order: no layer is lost or repeated
-    eps,   ///< by depth + eps (specification A10)
-};
-/// What one geometry pass captures of each pixel.
-enum class PassCapture : std::uint8_t {
-    nearest,          ///< the nearest fragment behind the layer before
-    nearest_farthest, ///< and the farthest before the one captured from behind: two layers a pass
-    range,            ///< the nearest fragment of a range of depths
-};
 
 /// What separates two batches of primitives on hardware that does not protect them.
 struct FlushRule {
@@ -105,8 +44,9 @@ struct ShaderSite {
     std::uint32_t lock_latency = 1;   ///< cycles from a pipe to the lock table, and back
     std::uint32_t grants_per_clk = 4; ///< critical sections entered per cycle
     bool tile_memory = false;         ///< the whole k-buffer is on chip; memory is touched at the end of the pass only
-    std::uint32_t read_latency = 0;   ///< of a k-buffer read that finds its tile on chip; 0 = the GPU's
-    std::uint32_t version_bits = 0;   ///< stored with each pixel, to detect hazards; 0 = none
+    /// Of a k-buffer read that finds its pixels on chip: to the access, and behind it; both 0 = the GPU's.
+    std::uint32_t read_request_latency = 0, read_return_latency = 0;
+    std::uint32_t version_bits = 0; ///< stored with each pixel, to detect hazards; 0 = none
 };
 
 struct BlenderSite {
@@ -136,8 +76,11 @@ struct ListsSite {
     std::uint64_t pool = 0;            ///< fragments that fit into memory, of all pixels together; 0 = no limit
     std::uint32_t per_pixel = 0;       ///< fragments of a pixel that one geometry pass keeps; 0 = no limit
     std::uint32_t passes = 1;          ///< geometry passes, each keeping the next `per_pixel` fragments
-    std::uint32_t counter_per_clk = 0; ///< fragments per cycle that the counter of the pool serves; 0 = no counter
-    std::uint32_t read_bytes = 32;     ///< that the later pass reads for each kept fragment
+    ListCounter counter = ListCounter::quad;
+    std::uint32_t counter_per_clk = 0; ///< atomics per cycle that the counter of the pool serves; 0 = no counter
+    bool chained = true;               ///< each node is found through the one before; else they are an array
+    ListSort sort = ListSort::full;
+    std::uint32_t array_registers = 0; ///< of a lane, that hold the first places of the sorted array; see list_sort.hpp
 };
 
 /// Hardware in front of the pipes, when the design has any.
@@ -193,46 +136,14 @@ class KBufferDesign {
     virtual SubmissionPlan submission() const { return {}; }
     /// A fresh plan for one machine.
     virtual KBufferPlan plan(const ModifyProgram& program, const View& view) const = 0;
-    /// Effective parameters, and area proxies (bits of state, comparators, ALU lanes) for this machine's shape.
+    /// Effective parameters.
     virtual nlohmann::ordered_json parameters() const = 0;
-    virtual nlohmann::ordered_json area(const ModifyProgram& program, const View& view,
-                                        std::uint32_t quads_in_flight) const = 0;
+    /// What it adds to a GPU of this shape.
+    virtual AddedHardware area(const ModifyProgram& program, const View& view, const GpuShape& shape) const = 0;
 };
 
 } // namespace pipeline
 
-template <>
-struct sim::EnumNames<pipeline::Visibility> {
-    static constexpr std::array<std::string_view, 3> names{"rop_cache", "writeback", "never_until_flush"};
-};
-template <>
-struct sim::EnumNames<pipeline::TextureCoherence> {
-    static constexpr std::array<std::string_view, 3> names{"none", "invalidate_on_draw", "invalidate_on_write"};
-};
-template <>
-struct sim::EnumNames<pipeline::DispatchPolicy> {
-    static constexpr std::array<std::string_view, 2> names{"any_pipe", "tile_affinity"};
-};
-template <>
-struct sim::EnumNames<pipeline::BlendInterlock> {
-    static constexpr std::array<std::string_view, 3> names{"stall", "forward", "none"};
-};
-template <>
-struct sim::EnumNames<pipeline::Retirement> {
-    static constexpr std::array<std::string_view, 2> names{"in_order", "out_of_order"};
-};
-template <>
-struct sim::EnumNames<pipeline::LockArea> {
-    static constexpr std::array<std::string_view, 3> names{"pixel", "quad", "tile"};
-};
-template <>
-struct sim::EnumNames<pipeline::EarlyReject> {
-    static constexpr std::array<std::string_view, 3> names{"none", "tile", "pixel"};
-};
-template <>
-struct sim::EnumNames<pipeline::PeelRule> {
-    static constexpr std::array<std::string_view, 2> names{"exact", "eps"};
-};
 template <>
 struct sim::EnumNames<pipeline::DepthFormat> {
     static constexpr std::array<std::string_view, 3> names{"d16", "d24", "d32f"};

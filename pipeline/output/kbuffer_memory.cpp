@@ -26,14 +26,15 @@ void KBufferMemory::clear() {
     memory_versions_ = split_ ? latest_versions_ : std::vector<PixelVersion>{};
 }
 
-void KBufferMemory::publish_tile(std::uint32_t tile) {
+void KBufferMemory::publish_block(std::uint32_t block, std::uint32_t pixels, const float* values,
+                                  const PixelVersion* versions) {
     if (!split_) return;
-    const auto first = static_cast<std::ptrdiff_t>(at(tile * 4, 0));
-    const auto floats = std::ptrdiff_t{16} * floats_;
-    std::copy(latest_.begin() + first, latest_.begin() + first + floats, memory_.begin() + first);
-    const std::ptrdiff_t pixel = static_cast<std::ptrdiff_t>(tile) * 16;
-    std::copy(latest_versions_.begin() + pixel, latest_versions_.begin() + pixel + 16,
-              memory_versions_.begin() + pixel);
+    for (std::uint32_t pixel = 0; pixel < 4; ++pixel) {
+        if ((pixels >> pixel & 1) == 0) continue;
+        const float* from = values + std::size_t{pixel} * floats_;
+        std::copy(from, from + floats_, memory_.begin() + static_cast<std::ptrdiff_t>(at(block, pixel)));
+        memory_versions_[std::size_t{block} * 4 + pixel] = versions[pixel];
+    }
 }
 
 std::vector<float> KBufferMemory::image() const {

@@ -40,8 +40,8 @@ class KBufferMemory {
     PixelVersion seen_version(std::uint32_t block, std::uint32_t pixel, bool rop_view) const {
         return (split_ && !rop_view ? memory_versions_ : latest_versions_)[block * 4 + pixel];
     }
-    /// Makes the latest bytes of a tile observable in memory.
-    void publish_tile(std::uint32_t tile);
+    /// Memory takes these pixels of a block: `values` and `versions` are those of all four.
+    void publish_block(std::uint32_t block, std::uint32_t pixels, const float* values, const PixelVersion* versions);
 
     /// Sets every pixel to the program's initial value, version 0.
     void clear();

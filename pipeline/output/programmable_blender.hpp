@@ -1,7 +1,7 @@
-// The unit of one ROP partition that modifies pixels: timing of what it does, and what happens when a pixel comes back
+// The unit of one ROP group that modifies pixels: timing of what it does, and what happens when a pixel comes back
 // while it is still inside.
 //
-// Modelled: cycles per fragment from the program's operations and the tile cache port (or from what a fixed-function
+// Modelled: cycles per fragment from the program's operations and the cache port (or from what a fixed-function
 // unit moves); one fragment per ROP at a time; pipeline latency; stall, forwarding, or neither; three ways to find out
 // whom a quad has to wait for, exact, by hashed counters, by tile.
 // Source: specification 004, sections 7.3 (steps 3-5, cost), 7.4; Bavoil 2007, section 4.3.1.
@@ -19,7 +19,7 @@ namespace pipeline {
 
 class ProgrammableBlender {
   public:
-    /// @param rops blenders of the partition
+    /// @param rops blenders of the group
     ProgrammableBlender(const BlenderSite& site, const ModifyProgram& program, std::uint32_t rops)
         : site_(site),
           rops_(rops),
@@ -30,7 +30,7 @@ class ProgrammableBlender {
     const BlenderSite& site() const { return site_; }
     /// Cycles one ROP works on one fragment.
     std::uint32_t cycles_per_fragment() const { return cost_; }
-    /// Cycles the partition's blenders work on a quad of `fragments` fragments.
+    /// Cycles the group's blenders work on a quad of `fragments` fragments.
     std::uint32_t cycles_per_quad(std::uint32_t fragments) const { return (fragments + rops_ - 1) / rops_ * cost_; }
     /// The same for a quad whose fragments together take `work` cycles, or atomics, of one ROP.
     std::uint32_t cycles_of(std::uint32_t work, std::uint32_t fragments) const {

@@ -1,7 +1,10 @@
 #include "pipeline/output/rop.hpp"
 
+#include "sim/check.hpp"
+
 #include <algorithm>
 #include <bit>
+#include <fmt/format.h>
 #include <limits>
 #include <utility>
 
@@ -14,26 +17,32 @@ Rop::Rop(sim::Context context, const RopParams& params, const PassContext& pass,
       pass_(&pass),
       plan_(&plan),
       surfaces_(surfaces),
-      depth_tiles_(shape.depth ? params.cache_tiles : 0, shape.tiles),
-      colour_tiles_(shape.colour ? params.cache_tiles : 0, shape.tiles),
-      kbuffer_tiles_(shape.kbuffer_tiles, pass.layout.tiles()),
+      shape_(shape),
       ledger_(pass.layout, *surfaces.history),
       draw_outputs_(shape.draws),
       queue_(params.queue),
       requests_(4 * request_room),
+      interleave_(shape.interleave),
+      index_(shape.index),
+      coming_(shape.memory_partitions),
       tile_reads_(1024),
+      tile_answers_(1024),
       answers_(4096),
       invalidations_(4096),
       bounds_(64),
       jobs_(1024) {
-    if (plan.shader.visibility == Visibility::never_until_flush) is_unpublished_.resize(pass.layout.tiles());
+    if (plan.shader.visibility == Visibility::never_until_flush) is_unpublished_.resize(pass.layout.blocks());
     if (plan.site == UpdateSite::blender && pass.program != nullptr)
-        blender_ = std::make_unique<ProgrammableBlender>(plan.blender, *pass.program, rops());
+        blender_ = std::make_unique<ProgrammableBlender>(plan.blender, *pass.program, rops);
     if (pass.program != nullptr) cleared_depth_ = pass.program->cleared_depth();
     if (plan.blender.early_reject == EarlyReject::tile)
         tile_bounds_.assign(pass.layout.tiles(), std::numeric_limits<float>::infinity());
     for (std::uint32_t job = static_cast<std::uint32_t>(jobs_.size()); job > 0; --job) free_jobs_.push_back(job - 1);
-    port_names_.reserve(std::size_t{3} * shape.pipes);
+    port_names_.reserve(std::size_t{3} * shape.pipes + std::size_t{2} * shape.memory_partitions);
+    for (std::uint32_t i = 0; i < shape.memory_partitions; ++i) {
+        memory_out.emplace_back(*this, port_names_.emplace_back("memory" + std::to_string(i) + "_out"));
+        memory_in.emplace_back(*this, port_names_.emplace_back("memory" + std::to_string(i) + "_in"));
+    }
     for (std::uint32_t pipe = 0; surfaces.payloads != nullptr && pipe < shape.pipes; ++pipe) {
         reads_in.emplace_back(*this, port_names_.emplace_back("reads" + std::to_string(pipe) + "_in"));
         reads_out.emplace_back(*this, port_names_.emplace_back("reads" + std::to_string(pipe) + "_out"));
@@ -41,6 +50,16 @@ Rop::Rop(sim::Context context, const RopParams& params, const PassContext& pass,
             invalidations_out.emplace_back(*this,
                                            port_names_.emplace_back("invalidations" + std::to_string(pipe) + "_out"));
     }
+}
+
+std::uint32_t RopParams::groups() const {
+    constexpr std::uint32_t group = 4;
+    if (units % group != 0)
+        throw sim::InputError(
+            fmt::format("rop.units: expected a multiple of {}, as ROPs come in groups of four, got {}; "
+                        "the nearest is {}",
+                        group, units, (units + group / 2) / group * group));
+    return units / group;
 }
 
 RopStats Rop::stats() const {
@@ -52,11 +71,15 @@ RopStats Rop::stats() const {
 }
 
 void Rop::begin_pass() {
-    for (TileCache* tiles : {&depth_tiles_, &colour_tiles_, &kbuffer_tiles_}) tiles->forget();
+    const bool kbuffer = pass_->end != FragmentEnd::depth_colour;
+    const std::array<bool, 3> used{shape_.depth && !kbuffer, shape_.colour && !kbuffer, kbuffer};
+    for (const Use use : {Use::depth, Use::colour, Use::kbuffer}) {
+        const auto at = static_cast<std::size_t>(use);
+        cache(use).begin(used[at] ? lines_that_fit(use) : 0, used[at] ? sector_shape(use) : SectorShape{});
+        parts_coming_[at].assign(cache(use).size(), 0);
+    }
     std::fill(tile_bounds_.begin(), tile_bounds_.end(), std::numeric_limits<float>::infinity());
 }
-
-std::uint32_t Rop::rops() const { return std::max(1U, params_.units / pass_->layout.partitions); }
 
 TileCache& Rop::cache(Use use) {
     return use == Use::depth ? depth_tiles_ : use == Use::colour ? colour_tiles_ : kbuffer_tiles_;
@@ -81,12 +104,10 @@ void Rop::part_taken(const QuadTask& part) {
     quads_in.pop();
 }
 
-// Moves one quad into the queue: its tiles are looked up, and fetched if need be, before its turn comes.
+// Moves one quad into the queue: its sectors are looked up, and fetched if need be, before its turn comes.
 bool Rop::admit() {
     const QuadTask* input = quads_in.peek();
-    if (input == nullptr || queue_.full() || requests_.size() + request_room > requests_.capacity() ||
-        invalidations_.size() + 8 > invalidations_.capacity())
-        return false;
+    if (input == nullptr || queue_.full() || !has_room()) return false;
     if (input->kind != QuadKind::quad) {
         queue_.push({quads_in.receive(), {}});
         return true;
@@ -94,25 +115,25 @@ bool Rop::admit() {
     Queued queued;
     queued.task = next_part(*input);
     const Quad& quad = pass_->stream->quads[queued.task.quad];
-    const std::uint32_t tile = pass_->layout.tile_of(quad.x, quad.y);
+    const std::uint32_t block = pass_->layout.block_of(quad.x, quad.y);
     const bool kbuffer = pass_->end != FragmentEnd::depth_colour;
     draw_ = pass_->draw_of(input->quad);
     const std::array<bool, 3> wanted{!kbuffer && (pass_->depth.test || pass_->depth.write),
                                      !kbuffer && pass_->colour_write, kbuffer};
     // All or none, so that a quad that has to wait holds nothing and counts nothing.
     for (const Use use : {Use::depth, Use::colour, Use::kbuffer})
-        if (wanted[static_cast<std::size_t>(use)] && cache(use).find(tile) == no_entry &&
-            cache(use).victim() == no_entry)
+        if (wanted[static_cast<std::size_t>(use)] && cache(use).victim() == no_entry &&
+            cache(use).find(cache(use).shape().line_of(block)) == no_entry)
             return false;
     for (const Use use : {Use::depth, Use::colour, Use::kbuffer})
-        if (const auto at = static_cast<std::size_t>(use); wanted[at]) queued.entry[at] = secure_tile(use, tile);
+        if (const auto at = static_cast<std::size_t>(use); wanted[at]) queued.entry[at] = secure_line(use, block);
     part_taken(queued.task);
     queue_.push(queued);
     stats_.queue_max.note(queue_.size());
     return true;
 }
 
-// Executes the oldest quad when its tiles are there, the unit is free and no interlock holds it.
+// Executes the oldest quad when its sectors are there, the unit is free and no interlock holds it.
 bool Rop::execute(sim::Activity& waiting) {
     if (queue_.empty()) return false;
     waiting = sim::Activity::memory;
@@ -135,7 +156,7 @@ bool Rop::execute(sim::Activity& waiting) {
         const std::uint32_t entry = queued.entry[static_cast<std::size_t>(use)];
         if (entry != no_entry && cache(use).pending(entry)) return false;
     }
-    if (requests_.full() || invalidations_.size() + 8 > invalidations_.capacity()) return false;
+    if (!has_room()) return false;
     const Quad& quad = pass_->stream->quads[queued.task.quad];
     if (pass_->end == FragmentEnd::kbuffer_blend) {
         const sim::Cycle at =
@@ -183,6 +204,7 @@ sim::Activity Rop::tick() {
     if (!pending_blends_.empty()) apply_pending_blends();
     bool progress = take_memory();
     sim::Activity waiting = sim::Activity::starved;
+    progress |= send_commits();
     progress |= serve_tile_reads();
     progress |= accept_reads();
     progress |= write_back_next();
@@ -197,7 +219,8 @@ sim::Activity Rop::tick() {
     progress |= send_bounds();
     if (progress) return sim::Activity::busy;
     if (waiting != sim::Activity::starved) return waiting;
-    const bool holds = !requests_.empty() || !answers_.empty() || !tile_reads_.empty() || !invalidations_.empty() ||
+    const bool holds = !requests_.empty() || !answers_.empty() || !tile_reads_.empty() || !tile_answers_.empty() ||
+                       !invalidations_.empty() || !commits_.empty() || free_stores_.size() != stores_.size() ||
                        writing_back_ || stream_reads_ + stream_writes_ + stream_outstanding_ != 0 ||
                        free_jobs_.size() != jobs_.size() || !pending_blends_.empty();
     return holds ? sim::Activity::memory : sim::Activity::starved;

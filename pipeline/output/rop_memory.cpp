@@ -1,197 +1,240 @@
-// The memory side of a ROP partition: tiles, write-back, k-buffer reads of texture units, clears and copies.
+// The memory side of a ROP group: fetches, write-back, clears and copies.
 #include "pipeline/output/rop.hpp"
+
+#include "sim/check.hpp"
 
 #include <algorithm>
 #include <bit>
+#include <fmt/format.h>
+#include <string_view>
 #include <utility>
 
 namespace pipeline {
 
 namespace {
 
-// Memory tags: the upper bits say what an answer is for.
-constexpr std::uint32_t tag_tile = 1U << 28U; ///< | use << 26 | entry
-constexpr std::uint32_t tag_read = 2U << 28U; ///< | job << 7 | target (64 = all targets)
-constexpr std::uint32_t tag_stream = 3U << 28U;
-constexpr std::uint32_t tag_part = 4U << 28U; ///< all but the last request of a tile that takes several
-constexpr std::uint32_t tag_kind = 15U << 28U;
-constexpr std::uint32_t all_target = 64;
-
 constexpr std::uint64_t surface_span = std::uint64_t{1} << 36U;
 
 } // namespace
 
-std::uint32_t Rop::tile_bytes(Use use) const {
+SectorShape Rop::sector_shape(Use use) const {
     switch (use) {
     case Use::depth:
-        return 16 * pass_->depth_bytes;
+        return {std::max(1U, pass_->depth_bytes)};
     case Use::colour:
-        return 16 * pass_->colour_bytes;
+        return {std::max(1U, pass_->colour_bytes)};
     case Use::kbuffer:
         break;
     }
-    return 16 * (pass_->end == FragmentEnd::kbuffer_list ? plan_->lists.head_bytes : pass_->program->bytes_per_pixel());
+    return {pass_->end == FragmentEnd::kbuffer_list ? plan_->lists.head_bytes : pass_->program->bytes_per_pixel()};
 }
 
-std::uint64_t Rop::tile_address(Use use, std::uint32_t tile) const {
-    return surface_span * (static_cast<std::uint64_t>(use) + 1) + std::uint64_t{tile} * tile_bytes(use);
+// Lines of the surface that this group owns, and some more: groups own tiles in turn, row by row.
+std::uint32_t Rop::own_lines(const SectorShape& shape) const {
+    const SurfaceLayout& layout = pass_->layout;
+    return (layout.tiles_x() / layout.partitions + 1) * layout.tiles_y() * 4 / shape.sectors();
+}
+
+// Tile memory holds all of them.
+std::uint32_t Rop::lines_that_fit(Use use) const {
+    const SectorShape shape = sector_shape(use);
+    if (use == Use::kbuffer && plan_->shader.tile_memory) return own_lines(shape);
+    const std::array<std::pair<std::string_view, std::uint32_t>, 3> sizes{
+        std::pair{"depth_cache_bytes", params_.depth_cache_bytes},
+        std::pair{"colour_cache_bytes", params_.colour_cache_bytes},
+        std::pair{"kbuffer_cache_bytes", params_.kbuffer_cache_bytes}};
+    const auto& [name, bytes] = sizes[static_cast<std::size_t>(use)];
+    const std::uint32_t groups = pass_->layout.partitions, lines = bytes / groups / shape.line_bytes();
+    if (lines == 0)
+        throw sim::InputError(fmt::format(
+            "rop.{}: expected at least {} bytes, {} for the quad that each of {} groups of four ROPs works on, got {}",
+            name, std::uint64_t{groups} * shape.line_bytes(), shape.line_bytes(), groups, bytes));
+    return std::min(lines, own_lines(shape));
+}
+
+std::uint64_t Rop::line_address(Use use, std::uint32_t line) const {
+    return surface_span * (static_cast<std::uint64_t>(use) + 1) + std::uint64_t{line} * cache(use).shape().line_bytes();
+}
+
+ClearBits* Rop::clear_bits(Use use) const {
+    return use == Use::depth    ? &surfaces_.fixed->depth_clear
+           : use == Use::colour ? &surfaces_.fixed->colour_clear
+                                : surfaces_.kbuffer_clear;
+}
+
+// Memory holds nothing of these sectors.
+bool Rop::cleared(Use use, std::uint32_t line) const {
+    const ClearBits* bits = clear_bits(use);
+    if (bits == nullptr || bits->left() == 0) return false;
+    const std::uint32_t sectors = cache(use).shape().sectors();
+    for (std::uint32_t block = line * sectors; block < (line + 1) * sectors; ++block)
+        if (!bits->cleared(block)) return false;
+    return true;
+}
+
+bool Rop::has_room() const {
+    return requests_.size() + request_room <= requests_.capacity() &&
+           invalidations_.size() + 8 <= invalidations_.capacity();
 }
 
 // Stores overwrite whole pixels under a byte mask; only what is combined with the stored value is fetched.
 bool Rop::fetches(Use use) const {
-    return use == Use::depth || (use == Use::colour && pass_->blend != BlendMode::replace) ||
-           (use == Use::kbuffer && pass_->end != FragmentEnd::kbuffer_store);
+    switch (use) {
+    case Use::depth:
+        return pass_->depth.test || pass_->farthest;
+    case Use::colour:
+        return pass_->blend != BlendMode::replace;
+    case Use::kbuffer:
+        break;
+    }
+    return pass_->end != FragmentEnd::kbuffer_store;
 }
 
 void Rop::request(std::uint64_t address, std::uint32_t bytes, std::uint32_t tag, MemoryClient client, bool write,
                   std::uint32_t draw) {
-    requests_.push({address, bytes, tag, draw, client, write});
+    requests_.push({address, bytes, tag, draw, client, write, (tag & tag_kind) == tag_store});
 }
 
-void Rop::publish(std::uint32_t tile) {
-    if (surfaces_.kbuffer == nullptr) return;
-    if (plan_->shader.visibility == Visibility::never_until_flush && !writing_back_ && !plan_->shader.write_through) {
-        if (!std::exchange(is_unpublished_[tile], 1)) unpublished_.push_back(tile);
-        return;
+// Requests of memory partitions that this many bytes take.
+std::uint32_t Rop::parts_of(std::uint64_t address, std::uint32_t bytes) const {
+    return static_cast<std::uint32_t>((address + bytes - 1) / interleave_ - address / interleave_ + 1);
+}
+
+// The whole line, in whole bursts.
+void Rop::fetch(Use use, std::uint32_t entry) {
+    constexpr std::uint64_t burst = SectorShape::burst;
+    const TileCache& lines = cache(use);
+    const std::uint64_t begin = line_address(use, lines.line(entry));
+    const std::uint64_t end = (begin + lines.shape().line_bytes() + burst - 1) / burst * burst;
+    for (std::uint64_t at = begin / burst * burst; at < end; at += largest_request) {
+        const auto bytes = static_cast<std::uint32_t>(std::min<std::uint64_t>(end - at, largest_request));
+        request(at, bytes, tag_tile | static_cast<std::uint32_t>(use) << 26U | entry, MemoryClient::tile_read, false,
+                draw_);
+        parts_coming_[static_cast<std::size_t>(use)][entry] += parts_of(at, bytes);
     }
-    surfaces_.kbuffer->publish_tile(tile);
-    surfaces_.history->tile_visible(tile, cycle() + 1);
-    if (!invalidations_out.empty() && plan_->shader.visibility != Visibility::rop_cache)
-        for (std::uint32_t block = tile * 4; block < tile * 4 + 4; ++block) invalidations_.push(block);
 }
 
-// A whole tile, in requests of the size that memory takes; the last one carries the tag.
-void Rop::request_tile(Use use, std::uint32_t tile, std::uint32_t tag, MemoryClient client, bool write) {
-    std::uint64_t address = tile_address(use, tile);
-    std::uint32_t left = tile_bytes(use);
-    for (; left > largest_request; left -= largest_request, address += largest_request)
-        request(address, largest_request, tag_part, client, write, draw_);
-    request(address, left, tag, client, write, draw_);
+// The bursts that these pixels lie in, under a byte mask; returns their number of requests. A sector holds one render
+// target after the other, and of each its four pixels.
+std::uint32_t Rop::write_pixels(Use use, std::uint32_t line, std::uint16_t pixels, std::uint32_t tag,
+                                std::uint32_t draw) {
+    constexpr std::uint64_t burst = SectorShape::burst;
+    const SectorShape& shape = cache(use).shape();
+    const std::uint32_t of_target = std::min(shape.pixel_bytes, SectorShape::target_pixel);
+    const std::uint64_t base = line_address(use, line);
+    std::uint64_t begin = 0, end = 0; // of the run so far
+    std::uint32_t parts = 0;
+    for (std::uint32_t target = 0; target < shape.pixel_bytes; target += of_target)
+        for (std::uint32_t left = pixels; left != 0; left &= left - 1) {
+            const auto pixel = static_cast<std::uint32_t>(std::countr_zero(left));
+            const std::uint64_t at = base + std::uint64_t{4} * target + std::uint64_t{pixel} * of_target;
+            const std::uint64_t first = at / burst * burst, last = (at + of_target + burst - 1) / burst * burst;
+            if (first > end) {
+                parts += write_run(begin, end, tag, draw);
+                begin = first;
+            }
+            end = std::max(end, last);
+        }
+    return parts + write_run(begin, end, tag, draw);
 }
 
+// Returns how many parts of it memory partitions take.
+std::uint32_t Rop::write_run(std::uint64_t begin, std::uint64_t end, std::uint32_t tag, std::uint32_t draw) {
+    std::uint32_t parts = 0;
+    for (; begin < end; begin += largest_request) {
+        const auto bytes = static_cast<std::uint32_t>(std::min<std::uint64_t>(end - begin, largest_request));
+        request(begin, bytes, tag, MemoryClient::tile_write, true, draw);
+        parts += parts_of(begin, bytes);
+    }
+    return parts;
+}
+
+// What has to be written so that memory holds these pixels: of a cleared sector all, as memory holds none of it.
+std::uint16_t Rop::with_cleared(Use use, std::uint32_t line, std::uint16_t pixels) {
+    ClearBits* bits = clear_bits(use);
+    if (bits == nullptr) return pixels;
+    const SectorShape& shape = cache(use).shape();
+    for (std::uint32_t block = line * shape.sectors(); block < (line + 1) * shape.sectors(); ++block) {
+        const std::uint16_t sector = shape.in_line(block, 15);
+        if ((pixels & sector) == 0 || !bits->cleared(block)) continue;
+        pixels |= sector;
+        bits->written(block);
+    }
+    return pixels;
+}
+
+// Writes what is dirty.
 void Rop::clean(Use use, std::uint32_t entry) {
-    TileCache& tiles = cache(use);
-    const std::uint32_t tile = tiles.tile(entry);
-    request_tile(use, tile, 0, MemoryClient::tile_write, true);
-    tiles.mark_clean(entry);
-    ++tiles.stats.writebacks;
-    if (use == Use::kbuffer) publish(tile);
+    TileCache& lines = cache(use);
+    const std::uint32_t line = lines.line(entry);
+    const std::uint16_t pixels = with_cleared(use, line, lines.dirty(entry));
+    if (use == Use::kbuffer && surfaces_.payloads != nullptr) {
+        CHECK_MSG(lines.shape().sectors() == 1, "a line of entries is one sector");
+        const std::uint32_t store = send_to_memory(line, pixels, std::nullopt);
+        stores_[store].parts = write_pixels(use, line, pixels, tag_store | store, draw_);
+    } else {
+        write_pixels(use, line, pixels, 0, draw_);
+    }
+    lines.mark_clean(entry, lines.dirty(entry));
+    ++lines.stats.writebacks;
 }
 
+// Answers come when the array is read; what hangs on the data waits until they are here.
 bool Rop::take_memory() {
     bool progress = false;
-    while (memory_in.peek() != nullptr) {
-        const std::uint32_t tag = memory_in.receive().tag;
-        progress = true;
-        if ((tag & tag_kind) == tag_tile)
-            cache(static_cast<Use>(tag >> 26U & 3U)).filled(tag & 0x3FF'FFFFU);
-        else if ((tag & tag_kind) == tag_stream)
-            --stream_outstanding_;
-        else if ((tag & tag_kind) == tag_read) {
-            const std::uint32_t target = tag & 127U;
-            ReadJob& job = jobs_[(tag & ~tag_kind) >> 7U];
-            sample(job.read, target == all_target ? job.read.targets : std::uint64_t{1} << target);
-            if (--job.outstanding != 0) continue;
-            answers_.push(job.read);
-            free_jobs_.push_back((tag & ~tag_kind) >> 7U);
+    sim::Cycle next = ~sim::Cycle{0};
+    for (std::size_t i = 0; i < coming_.size(); ++i) {
+        auto& coming = coming_[i];
+        for (; memory_in[i].peek() != nullptr; progress = true) {
+            const MemoryResponse response = memory_in[i].receive();
+            array_accessed(response.tag);
+            coming.push_back({response.tag, cycle() + response.delay});
         }
+        for (; !coming.empty() && coming.front().ready <= cycle(); coming.pop_front()) {
+            take_answer(coming.front().tag);
+            progress = true;
+        }
+        if (!coming.empty()) next = std::min(next, coming.front().ready);
     }
+    if (next != ~sim::Cycle{0}) wake_at(next);
     return progress;
 }
 
-void Rop::sample(const KBufferRead& read, std::uint64_t targets) {
-    const bool rop_view = plan_->shader.visibility == Visibility::rop_cache;
-    for (std::uint32_t pixel = 0; pixel < 4; ++pixel) {
-        const float* pixel_floats = surfaces_.kbuffer->seen(read.block, pixel, rop_view);
-        const PixelVersion version = surfaces_.kbuffer->seen_version(read.block, pixel, rop_view);
-        for (std::uint64_t left = targets; left != 0; left &= left - 1) {
-            const auto target = static_cast<std::uint32_t>(std::countr_zero(left));
-            surfaces_.payloads->sample(read.slot, pixel, target, pixel_floats + std::size_t{4} * target, version,
-                                       cycle());
-        }
+void Rop::take_answer(std::uint32_t tag) {
+    if ((tag & tag_kind) == tag_tile) {
+        const std::uint32_t use = tag >> 26U & 3U;
+        const std::uint32_t entry = tag & 0x3FF'FFFFU;
+        if (--parts_coming_[use][entry] == 0) cache(static_cast<Use>(use)).filled(entry);
+    } else if ((tag & tag_kind) == tag_stream) {
+        --stream_outstanding_;
+    } else if ((tag & tag_kind) == tag_read) {
+        const std::uint32_t index = (tag & ~tag_kind) >> 7U;
+        ReadJob& job = jobs_[index];
+        if (--job.outstanding != 0) return;
+        const auto targets = static_cast<std::uint32_t>(std::popcount(job.read.targets));
+        if (targets == pass_->program->targets()) kbuffer_tiles_.complete(job.read.block);
+        answers_.push(job.read);
+        free_jobs_.push_back(index);
     }
 }
 
-bool Rop::kbuffer_on_chip(std::uint32_t tile) const {
-    return plan_->shader.tile_memory ||
-           (plan_->shader.visibility == Visibility::rop_cache && kbuffer_tiles_.resident(tile));
-}
-
-// Takes reads of the texture units, round robin over the pipes. A tile in the cache answers at once when reads may see
-// it.
-bool Rop::accept_reads() {
-    const auto pipes = static_cast<std::uint32_t>(reads_in.size());
-    const std::uint32_t first = next_pipe_;
-    std::uint32_t accepted = 0;
-    for (std::uint32_t n = 0; n < pipes && accepted < params_.reads_per_clk; ++n) {
-        const std::uint32_t pipe = (first + n) % pipes;
-        auto& port = reads_in[pipe];
-        if (port.peek() == nullptr) continue;
-        if (free_jobs_.empty() || requests_.size() + 2 * request_room > requests_.capacity() || tile_reads_.full())
-            break;
-        const KBufferRead read = port.receive();
-        const std::uint32_t tile = SurfaceLayout::tile_of_block(read.block);
-        ++stats_.kbuffer_reads;
-        ++accepted;
-        next_pipe_ = (pipe + 1) % pipes;
-        if (kbuffer_on_chip(tile)) {
-            const std::uint32_t own = plan_->shader.read_latency;
-            tile_reads_.push({read, cycle() + (own != 0 ? own : params_.read_latency)});
-            ++stats_.kbuffer_reads_from_tiles;
-            continue;
-        }
-        const std::uint32_t index = free_jobs_.back();
-        const std::uint64_t address =
-            tile_address(Use::kbuffer, tile) + std::uint64_t{read.block % 4} * (tile_bytes(Use::kbuffer) / 4);
-        free_jobs_.pop_back();
-        jobs_[index].read = read;
-        if (plan_->shader.atomic_reads) {
-            jobs_[index].outstanding = 1;
-            request(address, 64U * static_cast<std::uint32_t>(std::popcount(read.targets)),
-                    tag_read | index << 7U | all_target, MemoryClient::kbuffer_read, false, read.draw);
-            continue;
-        }
-        jobs_[index].outstanding = static_cast<std::uint32_t>(std::popcount(read.targets));
-        for (std::uint64_t left = read.targets; left != 0; left &= left - 1) {
-            const auto target = static_cast<std::uint32_t>(std::countr_zero(left));
-            request(address + std::uint64_t{64} * target, 64, tag_read | index << 7U | target,
-                    MemoryClient::kbuffer_read, false, read.draw);
-        }
-    }
-    return accepted != 0;
-}
-
-// Values leave the tile cache after its latency, as they are then.
-bool Rop::serve_tile_reads() {
-    bool progress = false;
-    while (!tile_reads_.empty() && tile_reads_.front().ready <= cycle() && !answers_.full()) {
-        const KBufferRead read = tile_reads_.front().read;
-        tile_reads_.pop();
-        sample(read, read.targets);
-        answers_.push(read);
-        progress = true;
-    }
-    if (!tile_reads_.empty()) wake_at(std::max(tile_reads_.front().ready, cycle() + 1));
-    return progress;
-}
-
-// The entry that holds the tile, replacing another tile and asking for this one if need be; pinned for one more quad.
-std::uint32_t Rop::secure_tile(Use use, std::uint32_t tile) {
-    TileCache& tiles = cache(use);
-    std::uint32_t entry = tiles.find(tile);
-    ++tiles.stats.accesses;
+// The entry that holds the sector, replacing another line and asking for this one if need be; pinned for one more quad.
+std::uint32_t Rop::secure_line(Use use, std::uint32_t block) {
+    TileCache& lines = cache(use);
+    const std::uint32_t line = lines.shape().line_of(block);
+    std::uint32_t entry = lines.find(line);
+    ++lines.stats.accesses;
     if (entry != no_entry) {
-        ++tiles.stats.hits;
+        ++lines.stats.hits;
     } else {
-        ++tiles.stats.misses;
-        entry = tiles.victim();
-        if (tiles.dirty(entry)) clean(use, entry);
-        tiles.allocate(entry, tile, fetches(use));
-        if (fetches(use))
-            request_tile(use, tile, tag_tile | static_cast<std::uint32_t>(use) << 26U | entry, MemoryClient::tile_read,
-                         false);
+        ++lines.stats.misses;
+        entry = lines.victim();
+        if (lines.dirty(entry) != 0) clean(use, entry);
+        const bool known = cleared(use, line), fetched = fetches(use) && !known;
+        lines.allocate(entry, line, fetched, known ? lines.shape().whole_line() : std::uint16_t{0});
+        if (fetched) fetch(use, entry);
     }
-    tiles.pin(entry);
+    lines.pin(entry);
     return entry;
 }
 
@@ -201,25 +244,28 @@ void Rop::write_back_all() {
     if (!simulation().running()) wake_in(1);
 }
 
-// One dirty tile per cycle; then what was evicted without becoming visible; then the answer to an in-band command.
+// One dirty line per cycle; then what was evicted without becoming visible; then the answer to an in-band command.
 bool Rop::write_back_next() {
     if (!writing_back_) return false;
-    if (requests_.size() + request_room > requests_.capacity() || invalidations_.size() + 8 > invalidations_.capacity())
-        return false;
-    const std::uint32_t tiles = std::max<std::uint32_t>(params_.cache_tiles, kbuffer_tiles_.size());
-    while (write_back_at_ < 3 * tiles) {
-        const auto use = static_cast<Use>(write_back_at_ / tiles);
-        const std::uint32_t entry = write_back_at_ % tiles;
+    if (!has_room()) return false;
+    const std::uint32_t lines = std::max({depth_tiles_.size(), colour_tiles_.size(), kbuffer_tiles_.size()});
+    while (write_back_at_ < 3 * lines) {
+        const auto use = static_cast<Use>(write_back_at_ / lines);
+        const std::uint32_t entry = write_back_at_ % lines;
         ++write_back_at_;
-        if (entry >= cache(use).size() || !cache(use).dirty(entry)) continue;
+        if (entry >= cache(use).size() || cache(use).dirty(entry) == 0) continue;
         clean(use, entry);
         return true;
     }
-    if (!unpublished_.empty()) {
+    // A flush has happened when the memory's array has all of it.
+    if (free_stores_.size() != stores_.size()) return false;
+    while (!unpublished_.empty()) {
+        if (invalidations_.size() + 8 > invalidations_.capacity()) return false;
+        const StoreInFlight& store = stores_[send_to_memory(unpublished_.back(), 15, std::nullopt)];
+        show(store);
+        free_stores_.push_back(static_cast<std::uint32_t>(&store - stores_.data()));
         is_unpublished_[unpublished_.back()] = 0;
-        publish(unpublished_.back());
         unpublished_.pop_back();
-        return true;
     }
     if (acknowledge_) {
         if (!commits_out.ready()) return false;
@@ -230,12 +276,12 @@ bool Rop::write_back_next() {
     return true;
 }
 
-void Rop::stream(std::uint64_t read_bytes, std::uint64_t write_bytes) {
+void Rop::stream(std::uint64_t read_bytes, std::uint64_t write_bytes, bool resolve) {
     stream_reads_ = read_bytes;
     stream_writes_ = write_bytes;
-    stream_address_ = surface_span * 8;
-    stats_.copies += read_bytes != 0 ? read_bytes + write_bytes : 0;
-    stats_.clears += read_bytes != 0 ? 0 : write_bytes;
+    stream_address_ = surface_span * 8 + std::uint64_t{index_} * stream_chunk;
+    sim::Counter& counter = resolve ? stats_.resolves : read_bytes != 0 ? stats_.copies : stats_.clears;
+    counter += read_bytes + write_bytes;
     wake_in(1);
 }
 
@@ -245,41 +291,28 @@ bool Rop::stream_next() {
     if (read && stream_outstanding_ >= stream_window) return false;
     std::uint64_t& left = read ? stream_reads_ : stream_writes_;
     const auto bytes = static_cast<std::uint32_t>(std::min<std::uint64_t>(left, stream_chunk));
-    request(stream_address_ + (read ? 0 : surface_span), bytes, tag_stream, MemoryClient::copy, !read, draw_);
+    const std::uint64_t address = stream_address_ + (read ? 0 : surface_span);
+    request(address, bytes, tag_stream, MemoryClient::copy, !read, draw_);
     left -= bytes;
-    stream_address_ += read ? 0 : bytes;
-    stream_outstanding_ += read ? 1U : 0U;
+    // The ROP partitions take the chunks of the surface in turn.
+    stream_address_ += read ? 0 : std::uint64_t{pass_->layout.partitions} * stream_chunk;
+    stream_outstanding_ += read ? parts_of(address, bytes) : 0;
     return true;
 }
 
 bool Rop::send_requests() {
     bool progress = false;
-    while (!requests_.empty() && memory_out.ready()) {
-        memory_out.send(requests_.front());
-        requests_.pop();
+    while (!requests_.empty()) {
+        MemoryRequest& whole = requests_.front();
+        auto& port = memory_out[whole.address / interleave_ % memory_out.size()];
+        if (!port.ready()) break;
+        MemoryRequest part = whole;
+        part.bytes = std::min(whole.bytes, interleave_ - static_cast<std::uint32_t>(whole.address % interleave_));
+        port.send(part);
         progress = true;
-    }
-    return progress;
-}
-
-bool Rop::send_answers() {
-    bool progress = false;
-    while (!answers_.empty() && reads_out[answers_.front().pipe].ready()) {
-        reads_out[answers_.front().pipe].send({answers_.front().thread});
-        answers_.pop();
-        progress = true;
-    }
-    return progress;
-}
-
-bool Rop::send_invalidations() {
-    bool progress = false;
-    while (!invalidations_.empty()) {
-        for (auto& port : invalidations_out)
-            if (!port.ready()) return progress;
-        for (auto& port : invalidations_out) port.send({invalidations_.front()});
-        invalidations_.pop();
-        progress = true;
+        whole.address += part.bytes;
+        whole.bytes -= part.bytes;
+        if (whole.bytes == 0) requests_.pop();
     }
     return progress;
 }

@@ -1,4 +1,4 @@
-// What a ROP partition does to the pixels of a quad; each operation returns the cycles it takes.
+// What a ROP group does to the pixels of a quad; each operation returns the cycles it takes.
 #include "pipeline/output/rop.hpp"
 
 #include "pipeline/functional/colour_format.hpp"
@@ -10,13 +10,14 @@
 namespace pipeline {
 
 std::uint32_t Rop::cycles_for(std::uint32_t bytes) const {
-    const std::uint32_t per_cycle = rops() * params_.bytes_per_clk;
+    const std::uint32_t per_cycle = rops * params_.bytes_per_clk;
     return std::max(1U, (bytes + per_cycle - 1) / per_cycle);
 }
 
 std::uint32_t Rop::run_depth_colour(const Queued& queued) {
     const Quad& quad = pass_->stream->quads[queued.task.quad];
-    std::uint32_t passed = 0;
+    const std::uint32_t block = pass_->layout.block_of(quad.x, quad.y);
+    std::uint32_t kept = 0; // mask
     for (std::uint32_t pixel = 0; pixel < 4; ++pixel) {
         if ((queued.task.mask >> pixel & 1) == 0) continue;
         const std::size_t at = pass_->place(quad, pixel);
@@ -27,13 +28,15 @@ std::uint32_t Rop::run_depth_colour(const Queued& queued) {
             continue;
         }
         ++stats_.depth_passed;
-        ++passed;
+        kept |= 1U << pixel;
         if (pass_->depth.write) surfaces_.fixed->depth[at] = code;
         surfaces_.fixed->winner[at] = queued.task.quad;
         if (pass_->colour_write && !surfaces_.fixed->colour.empty()) write_colour(queued.task.quad, pixel, at);
     }
-    if ((passed != 0 || pass_->farthest) && pass_->depth.write) depth_tiles_.mark_dirty(queued.entry[0]);
-    if (passed != 0 && pass_->colour_write) colour_tiles_.mark_dirty(queued.entry[1]);
+    const std::uint32_t changed = pass_->farthest ? queued.task.mask : kept;
+    if (pass_->depth.write) depth_tiles_.mark_dirty(queued.entry[0], depth_tiles_.shape().in_line(block, changed));
+    if (pass_->colour_write) colour_tiles_.mark_dirty(queued.entry[1], colour_tiles_.shape().in_line(block, kept));
+    const auto passed = static_cast<std::uint32_t>(std::popcount(kept));
     const auto fragments = static_cast<std::uint32_t>(std::popcount(queued.task.mask));
     const std::uint32_t blended = pass_->blend == BlendMode::replace ? 1 : 2; // reads the colour, too
     return cycles_for((pass_->depth.test ? fragments * pass_->depth_bytes : 0) +
@@ -68,8 +71,10 @@ bool Rop::hazardous_store(const Queued& queued, std::uint32_t block, std::uint32
     const std::uint32_t stored = surfaces_.kbuffer->latest_version(block, pixel).stores;
     // Where no order is asked for, a predecessor is whoever has stored before.
     const std::uint32_t order = plan_->order_free ? stored : queued.task.order[pixel];
-    const bool hazard = ledger_.book(block, pixel, queued.task.quad,
-                                     {order, oldest.stores, newest, (*surfaces_.payloads)[slot].last_read});
+    const QuadPayload& payload = (*surfaces_.payloads)[slot];
+    const bool hazard =
+        ledger_.book(block, pixel, queued.task.quad,
+                     {order, oldest.stores, newest, payload.first_read, payload.last_fill}, cycle() + 1);
     if (plan_->shader.version_bits != 0) {
         const std::uint32_t mask = (1U << plan_->shader.version_bits) - 1;
         const bool differs = ((stored ^ oldest.stores) & mask) != 0 || ((stored ^ newest) & mask) != 0;
@@ -82,7 +87,6 @@ bool Rop::hazardous_store(const Queued& queued, std::uint32_t block, std::uint32
 std::uint32_t Rop::run_store(const Queued& queued) {
     const Quad& quad = pass_->stream->quads[queued.task.quad];
     const std::uint32_t block = pass_->layout.block_of(quad.x, quad.y);
-    const std::uint32_t tile = SurfaceLayout::tile_of_block(block);
     const std::uint32_t targets = pass_->program->targets();
     const bool rop_view = plan_->shader.visibility == Visibility::rop_cache;
     bool hazardous = false;
@@ -91,7 +95,7 @@ std::uint32_t Rop::run_store(const Queued& queued) {
         if ((queued.task.mask >> pixel & 1) == 0) continue;
         PixelVersion oldest;
         hazardous |= hazardous_store(queued, block, pixel, oldest);
-        ledger_.enter(block, pixel, queued.task.quad, queued.task.retired, cycle(),
+        ledger_.enter(block, pixel, queued.task.quad, queued.task.retired, cycle() + 1,
                       rop_view ? cycle() + 1 : StoreHistory::never);
         const float* values = surfaces_.payloads->values(queued.task.slot, pixel);
         std::copy(values, values + std::size_t{4} * targets, surfaces_.kbuffer->latest(block, pixel));
@@ -100,24 +104,30 @@ std::uint32_t Rop::run_store(const Queued& queued) {
         ++stats_.stores;
         ++fragments;
     }
-    kbuffer_tiles_.mark_dirty(queued.entry[2]);
-    if (plan_->shader.write_through) {
-        request(tile_address(Use::kbuffer, tile) + std::uint64_t{block % 4} * (tile_bytes(Use::kbuffer) / 4),
-                tile_bytes(Use::kbuffer) / 4, 0, MemoryClient::tile_write, true, pass_->draw_of(queued.task.quad));
-        kbuffer_tiles_.mark_clean(queued.entry[2]);
-        publish(tile);
-    }
+    const std::uint16_t stored = kbuffer_tiles_.shape().in_line(block, queued.task.mask);
+    kbuffer_tiles_.mark_dirty(queued.entry[2], stored);
     if (rop_view && !invalidations_out.empty()) invalidations_.push(block);
-    finish(queued, hazardous);
+    draw_outputs_[pass_->draw_of(queued.task.quad)].hazards += hazardous ? 1 : 0;
+    if (plan_->shader.write_through) { // stored for its successors when memory has it
+        const std::uint32_t line = kbuffer_tiles_.line(queued.entry[2]);
+        const std::uint16_t pixels = with_cleared(Use::kbuffer, line, stored);
+        const std::uint32_t store = send_to_memory(block, pixels, commit_of(queued));
+        stores_[store].parts =
+            write_pixels(Use::kbuffer, line, pixels, tag_store | store, pass_->draw_of(queued.task.quad));
+        kbuffer_tiles_.mark_clean(queued.entry[2], stored);
+    } else {
+        finish(queued);
+    }
     return cycles_for(fragments * pass_->program->bytes_per_pixel());
 }
 
-void Rop::finish(const Queued& queued, bool hazardous) {
-    draw_outputs_[pass_->draw_of(queued.task.quad)].hazards += hazardous ? 1 : 0;
-    if (commits_out.connected())
-        commits_out.send({queued.task.slot, queued.task.quad, queued.task.pixels(), QuadKind::quad});
-    if (releases_out.connected())
-        releases_out.send({queued.task.slot, queued.task.quad, queued.task.pixels(), QuadKind::quad});
+Commit Rop::commit_of(const Queued& queued) {
+    return {queued.task.slot, queued.task.quad, queued.task.pixels(), QuadKind::quad};
+}
+
+void Rop::finish(const Queued& queued) {
+    if (commits_out.connected()) commits_out.send(commit_of(queued));
+    if (releases_out.connected()) releases_out.send(commit_of(queued));
 }
 
 } // namespace pipeline

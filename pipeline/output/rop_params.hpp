@@ -1,4 +1,4 @@
-// Parameters and counters of a ROP partition; the unit is in rop.hpp.
+// Parameters and counters of the ROP groups; the unit is in rop.hpp.
 #pragma once
 
 #include "pipeline/output/tile_cache.hpp"
@@ -8,41 +8,65 @@
 namespace pipeline {
 
 struct RopParams {
+    static constexpr std::uint32_t largest_cache = 1U << 30U; ///< bytes
+
     std::uint32_t units = 16;
     std::uint32_t bytes_per_clk = 16;
-    std::uint32_t cache_tiles = 32;
-    std::uint32_t queue = 32;
+    std::uint32_t depth_cache_bytes = 16384;
+    std::uint32_t colour_cache_bytes = 65536;
+    std::uint32_t kbuffer_cache_bytes = 65536;
+    std::uint32_t queue = 128;
     std::uint32_t reads_per_clk = 1;
-    std::uint32_t read_latency = 280;
+    std::uint32_t read_request_latency = 140;
+    std::uint32_t read_return_latency = 140;
     bool fast_clear = false;
+    std::uint32_t clear_sectors = 1048576;
+
+    /// Groups of four; throws sim::InputError when the ROPs do not come in groups.
+    std::uint32_t groups() const;
 
     static constexpr auto fields() {
         using P = RopParams;
         return std::tuple{
-            sim::field<&P::units>("ROPs of all partitions together").unit("rops").range(1, 1024),
-            sim::field<&P::bytes_per_clk>("Bytes one ROP moves to or from its tile cache per cycle")
+            sim::field<&P::units>("ROPs of all groups together, a multiple of 4").unit("rops").range(4, 256),
+            sim::field<&P::bytes_per_clk>("Bytes one ROP moves to or from its caches per cycle")
                 .unit("bytes")
                 .range(1, 1024),
-            sim::field<&P::cache_tiles>("4x4-pixel tiles in each tile cache of a partition")
-                .unit("tiles")
-                .range(1, 65534),
-            sim::field<&P::queue>("Quads whose tiles are looked up ahead of execution").unit("quads").range(1, 4096),
-            sim::field<&P::reads_per_clk>("k-buffer reads of texture units accepted per cycle")
+            sim::field<&P::depth_cache_bytes>("Depth caches of all ROP groups together")
+                .unit("bytes")
+                .range(64, largest_cache),
+            sim::field<&P::colour_cache_bytes>("Colour caches of all ROP groups together")
+                .unit("bytes")
+                .range(64, largest_cache),
+            sim::field<&P::kbuffer_cache_bytes>("k-buffer caches of all ROP groups together")
+                .unit("bytes")
+                .range(64, largest_cache),
+            sim::field<&P::queue>("Quads of a group whose sectors are looked up ahead of execution")
+                .unit("quads")
+                .range(1, 4096),
+            sim::field<&P::reads_per_clk>("k-buffer reads of texture units that a group accepts per cycle")
                 .unit("reads")
                 .range(1, 64),
-            sim::field<&P::read_latency>(
-                "From a texture unit's k-buffer read to its value, when the tile is in the cache")
+            sim::field<&P::read_request_latency>(
+                "From a texture unit's k-buffer read to the access of the cache, when that holds the pixels")
                 .unit("cycles")
-                .range(1, 10000),
-            sim::field<&P::fast_clear>("Clears cost no memory traffic")};
+                .range(0, 100000),
+            sim::field<&P::read_return_latency>("From that access to the value in the texture unit")
+                .unit("cycles")
+                .range(1, 100000),
+            sim::field<&P::fast_clear>("Clears mark sectors in a table instead of writing them"),
+            sim::field<&P::clear_sectors>(
+                "Sectors of a surface that the table of its fast clears covers; larger ones are cleared by writing")
+                .unit("sectors")
+                .range(0, 1U << 30U)};
     }
 };
 static_assert(sim::fully_described<RopParams>);
 
 struct RopStats {
     sim::Counter quads, fragments, depth_passed, depth_failed, stores, program_runs, program_cycles, insertions,
-        interlock_stalls, kbuffer_reads, kbuffer_reads_from_tiles, atomics, kept, not_kept, passed_over,
-        hazards_detected, hazards_overlooked, clears, copies;
+        interlock_stalls, kbuffer_reads, kbuffer_reads_from_tiles, atomics, counter_atomics, kept, not_kept,
+        passed_over, hazards_detected, hazards_overlooked, clears, copies, resolves;
     sim::HighWater queue_max;
     TileCacheStats depth_tiles, colour_tiles, kbuffer_tiles;
 
@@ -59,8 +83,9 @@ struct RopStats {
             sim::field<&S::insertions>("Program runs that changed their pixel").unit("fragments"),
             sim::field<&S::interlock_stalls>("Quads that waited for a pixel inside the blender").unit("quads"),
             sim::field<&S::kbuffer_reads>("k-buffer reads of texture units, one per quad").unit("reads"),
-            sim::field<&S::kbuffer_reads_from_tiles>("Of those, served from the tile cache").unit("reads"),
+            sim::field<&S::kbuffer_reads_from_tiles>("Of those, served from the cache").unit("reads"),
             sim::field<&S::atomics>("Atomic minima executed").unit("operations"),
+            sim::field<&S::counter_atomics>("Atomic additions to the counter of the lists' memory").unit("operations"),
             sim::field<&S::kept>("Fragments added to their pixel's list").unit("fragments"),
             sim::field<&S::not_kept>("Fragments that no list had room for").unit("fragments"),
             sim::field<&S::passed_over>("Fragments that another pass keeps").unit("fragments"),
@@ -71,10 +96,12 @@ struct RopStats {
                 .unit("fragments"),
             sim::field<&S::clears>("Bytes written by clears").unit("bytes"),
             sim::field<&S::copies>("Bytes read and written by copies").unit("bytes"),
-            sim::field<&S::queue_max>("Most quads waiting for their tiles").unit("quads"),
-            sim::field<&S::depth_tiles>("Depth tile cache"),
-            sim::field<&S::colour_tiles>("Colour tile cache"),
-            sim::field<&S::kbuffer_tiles>("k-buffer tile cache")};
+            sim::field<&S::resolves>("Bytes written of sectors that were cleared fast, for readers on the memory side")
+                .unit("bytes"),
+            sim::field<&S::queue_max>("Most quads waiting for their sectors").unit("quads"),
+            sim::field<&S::depth_tiles>("Depth caches"),
+            sim::field<&S::colour_tiles>("Colour caches"),
+            sim::field<&S::kbuffer_tiles>("k-buffer caches")};
     }
 };
 static_assert(sim::fully_described<RopStats>);

@@ -1,4 +1,4 @@
-// The units of a ROP partition that modify a pixel's entries in place, and the lists of fragments; each operation
+// The units of a ROP group that modify a pixel's entries in place, and the lists of fragments; each operation
 // returns the cycles it takes.
 #include "pipeline/output/rop.hpp"
 
@@ -50,6 +50,7 @@ std::uint32_t Rop::run_blend(const Queued& queued) {
     const sim::Cycle delayed_until = cycle() + std::max(plan_->blender.latency, blender_->cycles_per_quad(fragments));
     bool hazardous = false;
     std::uint32_t work = 0;
+    std::uint32_t changed_pixels = 0; // mask
     for (std::uint32_t pixel = 0; pixel < 4; ++pixel) {
         if ((queued.task.mask >> pixel & 1) == 0) continue;
         std::array<float, largest_entry> entry;
@@ -60,14 +61,19 @@ std::uint32_t Rop::run_blend(const Queued& queued) {
         const std::uint32_t number =
             pass_->multisampled ? surfaces_.history->store(block, pixel).number : queued.task.order[pixel];
         const std::uint32_t order = plan_->order_free ? version.stores : number;
-        hazardous |= ledger_.book(block, pixel, queued.task.quad, {order, version.stores, version.stores, cycle()});
-        ledger_.enter(block, pixel, queued.task.quad, queued.task.retired, cycle(),
-                      delayed ? delayed_until : cycle() + 1);
+        // Without an interlock the next read may come before the result is written, to the array that all reads see.
+        const sim::Cycle written_at = delayed ? delayed_until : cycle() + 1;
+        hazardous |= ledger_.book(block, pixel, queued.task.quad,
+                                  {order, version.stores, version.stores, cycle(), cycle()}, written_at);
+        ledger_.enter(block, pixel, queued.task.quad, queued.task.retired, written_at, written_at);
         ++stats_.program_runs;
         work += unit_work(stored, entry.data());
         if (!delayed) {
             const bool changed = program.insert(stored, entry.data());
-            if (changed) ++stats_.insertions;
+            if (changed) {
+                ++stats_.insertions;
+                changed_pixels |= 1U << pixel;
+            }
             version = {order + 1, version.chain + 1};
             if (changed && bounds_out.connected()) note_bound(block, pixel);
             continue;
@@ -75,15 +81,18 @@ std::uint32_t Rop::run_blend(const Queued& queued) {
         pending_blends_.push_back({block, pixel, {order + 1, version.chain + 1}, delayed_until});
         const std::size_t value = pending_values_.size();
         pending_values_.insert(pending_values_.end(), stored, stored + floats);
-        if (program.insert(pending_values_.data() + value, entry.data())) ++stats_.insertions;
+        if (!program.insert(pending_values_.data() + value, entry.data())) continue;
+        ++stats_.insertions;
+        changed_pixels |= 1U << pixel;
     }
     const std::uint32_t cycles = blender_->cycles_of(work, fragments);
     const sim::Cycle written = blender_->enter(block, queued.task.pixels(), cycle(), cycles);
     if (plan_->blender.unit == BlendUnit::atomic_min) stats_.atomics += work;
     if (delayed) wake_at(written);
     stats_.program_cycles += cycles;
-    kbuffer_tiles_.mark_dirty(queued.entry[2]);
-    finish(queued, hazardous);
+    kbuffer_tiles_.mark_dirty(queued.entry[2], kbuffer_tiles_.shape().in_line(block, changed_pixels));
+    draw_outputs_[pass_->draw_of(queued.task.quad)].hazards += hazardous ? 1 : 0;
+    finish(queued);
     return cycles;
 }
 
@@ -121,15 +130,15 @@ bool Rop::send_bounds() {
     return progress;
 }
 
-// Adds the fragments to their pixels' lists: the head of the list is exchanged in the tile cache, the fragment itself
-// goes to memory. The counter that gives out memory is shared by all partitions.
+// Adds the fragments to their pixels' lists: the head of the list is exchanged in the cache, the fragment itself goes
+// to memory. The counter that gives out memory is one for all groups: each gets its share of what it serves.
 std::uint32_t Rop::run_append(const Queued& queued) {
     const Quad& quad = pass_->stream->quads[queued.task.quad];
     const std::uint32_t block = pass_->layout.block_of(quad.x, quad.y);
     const ListsSite& lists = plan_->lists;
     const std::uint64_t room = lists.pool == 0 ? ~std::uint64_t{0} : lists.pool / pass_->layout.partitions;
     const auto fragments = static_cast<std::uint32_t>(std::popcount(queued.task.mask));
-    std::uint32_t kept = 0;
+    std::uint32_t kept = 0, kept_pixels = 0;
     for (std::uint32_t pixel = 0; pixel < 4; ++pixel) {
         if ((queued.task.mask >> pixel & 1) == 0) continue;
         const std::uint32_t order = queued.task.order[pixel];
@@ -142,20 +151,35 @@ std::uint32_t Rop::run_append(const Queued& queued) {
             ++stats_.not_kept;
             continue;
         }
-        surfaces_.lists->keep(block, pixel, queued.task.quad);
+        surfaces_.lists->keep(block, pixel, {queued.task.quad, static_cast<std::uint32_t>(stats_.kept.value)});
         ++stats_.kept;
         ++kept;
+        kept_pixels |= 1U << pixel;
     }
-    kbuffer_tiles_.mark_dirty(queued.entry[2]);
-    if (kept != 0)
-        request(pool_address + stats_.kept * lists.fragment_bytes, kept * lists.fragment_bytes, 0,
-                MemoryClient::tile_write, true, pass_->draw_of(queued.task.quad));
-    finish(queued, false);
+    kbuffer_tiles_.mark_dirty(queued.entry[2], kbuffer_tiles_.shape().in_line(block, kept_pixels));
+    write_nodes(queued.task, kept);
+    finish(queued);
     std::uint32_t cycles = cycles_for(2 * fragments * lists.head_bytes);
-    if (lists.counter_per_clk != 0)
-        cycles = std::max(cycles,
-                          (fragments * pass_->layout.partitions + lists.counter_per_clk - 1) / lists.counter_per_clk);
+    if (lists.counter_per_clk != 0) {
+        const std::uint32_t atomics = lists.counter == ListCounter::quad ? 1 : fragments;
+        stats_.counter_atomics += atomics;
+        cycles =
+            std::max(cycles, (atomics * pass_->layout.partitions + lists.counter_per_clk - 1) / lists.counter_per_clk);
+    }
     return cycles;
+}
+
+// The last `count` nodes that were kept, of one quad: where the counter gave them memory.
+void Rop::write_nodes(const QuadTask& task, std::uint32_t count) {
+    const Quad& quad = pass_->stream->quads[task.quad];
+    const std::uint32_t bytes = plan_->lists.fragment_bytes;
+    std::uint64_t byte = (stats_.kept - count) * bytes;
+    for (const std::uint64_t end = stats_.kept * bytes; byte < end;) {
+        const std::uint64_t part = std::min(end - byte, FragmentLists::chunk - byte % FragmentLists::chunk);
+        request(FragmentLists::address(pass_->layout.partition_of(quad.x, quad.y), pass_->layout.partitions, byte),
+                static_cast<std::uint32_t>(part), 0, MemoryClient::tile_write, true, pass_->draw_of(task.quad));
+        byte += part;
+    }
 }
 
 } // namespace pipeline

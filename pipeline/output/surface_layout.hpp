@@ -1,8 +1,8 @@
 // How a surface is cut into the units that caches, ROPs and memory work on.
 //
-// A tile is 4x4 pixels and belongs to one ROP partition; a block is one aligned 2x2 quad. Blocks are numbered tile by
-// tile so that a tile is contiguous in memory. With several samples to a pixel the surface holds a plane for each
-// (sample_planes.hpp): a tile is 4x4 pixels of one sample, and all samples of a pixel belong to one partition.
+// A tile is 4x4 pixels and belongs to one ROP group (four ROPs); a block is one aligned 2x2 quad. Blocks are numbered
+// tile by tile so that a tile is contiguous in memory. With several samples to a pixel the surface holds a plane for
+// each (sample_planes.hpp): a tile is 4x4 pixels of one sample, and all samples of a pixel belong to one group.
 #pragma once
 
 #include "pipeline/sample_planes.hpp"
@@ -15,8 +15,8 @@ struct SurfaceLayout {
     static constexpr std::uint32_t tile_size = 4; ///< pixels along one side
 
     std::uint32_t width = 0, height = 0; ///< pixels
-    std::uint32_t partitions = 1;
-    std::uint32_t samples = 1; ///< of a pixel
+    std::uint32_t partitions = 1;        ///< ROP groups that share the surface
+    std::uint32_t samples = 1;           ///< of a pixel
 
     std::uint32_t rows_of_plane() const { return plane_rows(height, samples); }
     std::uint32_t rows() const { return samples * rows_of_plane(); } ///< of all planes
@@ -39,7 +39,7 @@ struct SurfaceLayout {
     /// Upper-left pixel of a block.
     std::uint32_t block_x(std::uint32_t block) const { return (block / 4 % tiles_x()) * tile_size + block % 2 * 2; }
     std::uint32_t block_y(std::uint32_t block) const { return (block / 4 / tiles_x()) * tile_size + block / 2 % 2 * 2; }
-    /// Neighbouring tiles lie in different partitions in both directions, if there is more than one.
+    /// Neighbouring tiles lie in different groups in both directions, if there is more than one.
     std::uint32_t partition_of_tile(std::uint32_t tile) const {
         const std::uint32_t row_step = partitions == 2 ? 1 : 2;
         const std::uint32_t row = pixel_row(tile / tiles_x() * tile_size) / tile_size;

@@ -2,40 +2,60 @@
 
 #include "sim/check.hpp"
 
+#include <bit>
+
 namespace pipeline {
 
-std::uint32_t TileCache::victim() const {
-    if (fresh_ < size()) return fresh_;
-    std::uint32_t best = none;
-    for (std::uint32_t entry = 0; entry < size(); ++entry) {
-        const Entry& candidate = entries_[entry];
-        if (candidate.users != 0 || candidate.pending) continue;
-        if (best == none || candidate.used < entries_[best].used) best = entry;
-    }
-    return best;
+void TileCache::begin(std::uint32_t lines, const SectorShape& shape) {
+    for (const Entry& entry : entries_) CHECK(entry.users == 0 && !entry.pending && entry.dirty == 0);
+    shape_ = shape;
+    entries_.assign(lines, {});
+    buckets_.assign(lines == 0 ? 0 : std::bit_ceil(lines), none);
+    oldest_ = newest_ = none;
+    for (std::uint32_t entry = 0; entry < lines; ++entry) append(entry);
 }
 
-void TileCache::allocate(std::uint32_t entry, std::uint32_t tile, bool pending) {
+bool TileCache::holds(std::uint32_t block) const {
+    const std::uint32_t entry = find(shape_.line_of(block));
+    if (entry == none || entries_[entry].pending) return false;
+    const std::uint16_t sector = shape_.in_line(block, 15);
+    return (entries_[entry].valid & sector) == sector;
+}
+
+void TileCache::complete(std::uint32_t block) {
+    const std::uint32_t entry = find(shape_.line_of(block));
+    if (entry != none) entries_[entry].valid |= shape_.in_line(block, 15);
+}
+
+void TileCache::allocate(std::uint32_t entry, std::uint32_t line, bool pending, std::uint16_t valid) {
     Entry& target = entries_[entry];
-    CHECK(target.users == 0 && !target.pending && !target.dirty);
-    if (target.tile != no_tile) where_[target.tile] = none;
-    target = {tile, 0, ++clock_, false, pending};
-    where_[tile] = entry;
-    while (fresh_ < size() && entries_[fresh_].tile != no_tile) ++fresh_;
+    CHECK(target.users == 0 && !target.pending && target.dirty == 0);
+    if (target.line != no_line) drop_tag(entry);
+    std::uint32_t& bucket = buckets_[bucket_of(line)];
+    target.line = line;
+    target.chain = bucket;
+    target.valid = valid;
+    target.pending = pending;
+    bucket = entry;
 }
 
-void TileCache::pin(std::uint32_t entry) {
-    ++entries_[entry].users;
-    entries_[entry].used = ++clock_;
+void TileCache::drop_tag(std::uint32_t entry) {
+    std::uint32_t* at = &buckets_[bucket_of(entries_[entry].line)];
+    while (*at != entry) at = &entries_[*at].chain;
+    *at = entries_[entry].chain;
 }
 
-void TileCache::forget() {
-    for (Entry& entry : entries_) {
-        CHECK(entry.users == 0 && !entry.pending && !entry.dirty);
-        if (entry.tile != no_tile) where_[entry.tile] = none;
-        entry = {};
-    }
-    fresh_ = 0;
+void TileCache::unlink(std::uint32_t entry) {
+    const Entry& gone = entries_[entry];
+    (gone.older == none ? oldest_ : entries_[gone.older].newer) = gone.newer;
+    (gone.newer == none ? newest_ : entries_[gone.newer].older) = gone.older;
+}
+
+void TileCache::append(std::uint32_t entry) {
+    entries_[entry].older = newest_;
+    entries_[entry].newer = none;
+    (newest_ == none ? oldest_ : entries_[newest_].newer) = entry;
+    newest_ = entry;
 }
 
 } // namespace pipeline

@@ -22,7 +22,8 @@ double scale_of(Scaling by, const pipeline::GpuParams& from, const pipeline::Gpu
 }
 
 GpuCalibration start_of(const std::string& gpu, const CalibrationPlan& plan) {
-    GpuCalibration result{gpu, {}, {}, 0};
+    GpuCalibration result;
+    result.gpu = gpu;
     const pipeline::GpuParams params = gpu_params(gpu);
     for (const CalibrationStep& step : plan.steps) {
         if (step.gpu != gpu) continue;
@@ -94,6 +95,7 @@ std::vector<GpuCalibration> calibrate_geometry(const std::vector<std::string>& g
                                                const GeometryRunOptions& options) {
     const std::vector<PublishedRow> rows = load_published_geometry();
     const CalibrationPlan plan = load_calibration_plan();
+    check_measured(gpus, measured_gpus(rows));
     std::vector<std::string> order = gpus.empty() ? measured_gpus(rows) : gpus;
     std::stable_partition(order.begin(), order.end(), [&plan](const std::string& gpu) {
         return std::none_of(plan.scaled.begin(), plan.scaled.end(),

@@ -25,7 +25,8 @@ struct GpuCalibration {
     std::string gpu;
     std::vector<CalibratedNumber> numbers;
     std::vector<ScaledNumber> scaled;
-    unsigned rounds = 0; ///< of the plan's steps until nothing moved
+    unsigned rounds = 0;                               ///< of the plan's steps until nothing moved
+    std::string command = "ropsim calibrate geometry"; ///< named beside numbers in GPU files
 
     std::map<std::string, double> values() const; ///< by parameter
 };

@@ -1,8 +1,8 @@
 #include "reports/geometry/json.hpp"
 
 #include "reports/result.hpp"
-
-#include <cmath>
+#include "reports/validation/error_report.hpp"
+#include "reports/validation/null_models.hpp"
 
 namespace reports {
 
@@ -44,19 +44,6 @@ ordered_json case_json(const GeometryCase& one) {
             {"stages", one.result.stages.is_null() ? ordered_json::object() : one.result.stages}};
 }
 
-ordered_json summary_json(const ErrorSummary& summary) {
-    return {{"gpu", summary.gpu},
-            {"predicted_rows", summary.predicted.rows},
-            {"median_predicted_error", summary.predicted.median},
-            {"worst_predicted_error", summary.predicted.worst},
-            {"worst_row", summary.predicted.worst_row},
-            {"measured",
-             {{"predicted_rows", summary.measured.rows},
-              {"median_predicted_error", summary.measured.median},
-              {"worst_predicted_error", summary.measured.worst},
-              {"worst_row", summary.measured.worst_row}}}};
-}
-
 } // namespace
 
 ordered_json advice_json(const GeometryAdvice& advice) {
@@ -88,32 +75,18 @@ ordered_json advice_json(const GeometryAdvice& advice) {
 ordered_json validation_json(const GeometryValidation& validation, const std::vector<LeftOneOut>& entries) {
     ordered_json rows = ordered_json::array(), summary = ordered_json::object(), by_gpu = ordered_json::array();
     for (const ValidationRow& row : validation.rows) {
-        ordered_json json = {{"table", row.table},
-                             {"row", row.row},
-                             {"gpu", row.gpu},
-                             {"published", row.published()},
-                             {"model", row.model},
-                             {"ratio", row.ratio()},
-                             {"status", sim::enum_name(row.status)},
-                             {"unit", row.unit},
-                             {"origin", sim::enum_name(row.origin)}};
-        if (row.low < row.high) {
-            json["published_least"] = row.low;
-            if (std::isfinite(row.high)) json["published_most"] = row.high;
-        }
-        if (!row.source.empty()) json["source"] = row.source;
+        ordered_json json = validation_row_json(row);
         if (row.acmr > 0) json["acmr"] = row.acmr;
         if (!row.limit.empty()) json["limit"] = row.limit;
-        if (!row.parameter.empty()) json["parameter"] = row.parameter;
-        if (!row.explanation.empty()) json["explanation"] = row.explanation;
         rows.push_back(std::move(json));
     }
     for (const ErrorSummary& one : validation.summary) {
         if (one.gpu != "all")
-            by_gpu.push_back(summary_json(one));
+            by_gpu.push_back(error_summary_json(one));
         else
-            summary = summary_json(one);
+            summary = error_summary_json(one);
     }
+    summary["null_model"] = geometry_null_model;
     summary["gpus"] = std::move(by_gpu);
     ordered_json document = {{"ropsim", about()},
                              {"fidelity", sim::enum_name(validation.fidelity)},

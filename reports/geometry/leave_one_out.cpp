@@ -28,19 +28,14 @@ ErrorSpread errors_with(const Case& exchanged, const std::vector<PublishedRow>& 
     std::vector<ValidationRow> measured;
     for (const PublishedRow& published : rows) {
         if (!published.fps.contains(gpu)) continue;
-        CalibrationKind kind{};
         const auto in = [&published](const std::string& expression) {
             const std::vector<std::string> used = rows_in(expression);
             return std::find(used.begin(), used.end(), published.key()) != used.end();
         };
-        const bool predicted =
-            !in(exchanged.row) && (in(exchanged.step.row) || plan.parameter_of(gpu, published.key(), kind).empty());
-        if (!predicted) continue;
-        ValidationRow row;
-        row.table = published.table;
-        row.row = published.row;
-        row.gpu = gpu;
-        row.low = row.high = published.fps.at(gpu);
+        ValidationRow row = published_row(published, gpu);
+        apply_plan(row, plan);
+        if (in(exchanged.row) || (!in(exchanged.step.row) && row.status != RowStatus::predicted)) continue;
+        row.status = RowStatus::predicted;
         row.model = 1000 / solver.milliseconds(published.key(), values);
         measured.push_back(std::move(row));
     }

@@ -24,8 +24,8 @@ PublishedRow row_of(TomlTable& table) {
     row.experiment.submission =
         choice<pipeline::Submission>(table, "submission", sim::EnumNames<pipeline::Submission>::names);
     table.entries("fps", [&](const std::string& gpu, const toml::node& value) {
-        if (!value.is_number() || *value.value<double>() <= 0) table.expected("fps", "numbers above 0");
-        row.fps[gpu] = *value.value<double>();
+        if (!value.is_string()) table.expected("fps", "texts, as they were printed");
+        row.fps[gpu] = printed_number(text_of_node(value), "reports/published/geometry.toml");
     });
     table.entries("explanations", [&](const std::string& gpu, const toml::node& value) {
         row.explanations[gpu] = text_of_node(value);
@@ -70,6 +70,7 @@ CalibrationPlan load_calibration_plan() {
                                    choice<Scaling>(table, "by", scalings)});
         });
     });
+    plan.choices = load_choices("geometry");
     return plan;
 }
 

@@ -2,6 +2,8 @@
 #pragma once
 
 #include "pipeline/frame.hpp"
+#include "reports/validation/choices.hpp"
+#include "reports/validation/printed_number.hpp"
 
 #include <array>
 #include <map>
@@ -21,18 +23,11 @@ struct GeometryExperiment {
     friend bool operator==(const GeometryExperiment&, const GeometryExperiment&) = default;
 };
 
-/// Where a published number comes from.
-enum class PublishedOrigin : std::uint8_t {
-    measured, ///< printed in a table
-    stated,   ///< in words
-    derived   ///< from numbers that were printed, or from words
-};
-
 /// One row of a published table.
 struct PublishedRow {
     std::string table, row; ///< "T3.4", "3f normal"
     GeometryExperiment experiment;
-    std::map<std::string, double> fps;               ///< by GPU
+    std::map<std::string, PrintedNumber> fps;        ///< by GPU
     std::map<std::string, std::string> explanations; ///< of a large miss, by GPU: by what mechanism
 
     std::string key() const { return table + " " + row; }
@@ -50,8 +45,7 @@ struct CalibrationStep {
     std::vector<std::string> alternatives; ///< rows that could determine it instead
 };
 
-/// A row, of a table or a figure, that a number decides which was found from another row, or chosen with this one in
-/// view.
+/// A row, of a table or a figure, that a number decides which was found from another row.
 struct SharedNumber {
     std::string gpu, row, parameter;
     CalibrationKind kind = CalibrationKind::calibrated;
@@ -70,6 +64,7 @@ struct CalibrationPlan {
     std::vector<CalibrationStep> steps;
     std::vector<SharedNumber> shared;
     std::vector<ScaledParameter> scaled;
+    std::vector<Choice> choices; ///< of no command
 
     /// The number that the row decided, or that decides it, for the GPU; "" when the row is predicted.
     std::string parameter_of(const std::string& gpu, const std::string& row, CalibrationKind& kind) const;
@@ -86,8 +81,3 @@ std::vector<std::string> rows_in(const std::string& expression);
 const PublishedRow& find_row(const std::vector<PublishedRow>& rows, const std::string& key);
 
 } // namespace reports
-
-template <>
-struct sim::EnumNames<reports::PublishedOrigin> {
-    static constexpr std::array<std::string_view, 3> names{"measured", "stated", "derived"};
-};

@@ -5,6 +5,8 @@
 #include "reports/html/markup.hpp"
 #include "reports/html/plot_page.hpp"
 #include "reports/result.hpp"
+#include "reports/validation/error_report.hpp"
+#include "reports/validation/null_models.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,24 +19,28 @@ namespace {
 std::string rows_html(const GeometryValidation& validation) {
     std::vector<std::vector<HtmlCell>> rows;
     for (const ValidationRow& row : validation.rows) {
-        const bool predicted = row.status == RowStatus::predicted;
-        const char* colour = !predicted ? "number" : row.error() > large_miss ? "number bad" : "number good";
+        const char* colour = row.status != RowStatus::predicted ? "number"
+                             : row.missed()                     ? "number bad"
+                                                                : "number good";
         rows.push_back({{row.table, ""},
                         {row.row, "name"},
                         {row.gpu, ""},
                         {row.unit, ""},
                         {published_text(row), "number"},
                         {fmt::format("{:.4g}", row.model), "number"},
-                        {fmt::format("{:.3f}", row.ratio()), colour},
-                        {std::string(sim::enum_name(row.status)), ""},
+                        {error_text(row.log_error()), colour},
+                        {error_in_sigma_text(row), "number"},
+                        {row_status_text(row), ""},
+                        {row.null_model > 0 ? fmt::format("{:.4g}", row.null_model) : "", "number"},
                         {std::string(sim::enum_name(row.origin)), ""},
                         {row.source, ""},
                         {row.parameter, ""},
                         {row.limit, ""},
                         {row.explanation, ""}});
     }
-    return html_table({"table", "row", "GPU", "unit", "published", "model", "ratio", "status", "published number",
-                       "from", "number it decides, or that decides it", "limit", "why it misses"},
+    return html_table({"table", "row", "GPU", "unit", "published", "model", "error (ln)", "in sigmas", "status",
+                       "null model", "published number", "from", "number it decides, or that decides it", "limit",
+                       "why it misses"},
                       rows);
 }
 
@@ -47,11 +53,11 @@ std::string table_html(const Table& table) {
     return html_table(table.header, rows);
 }
 
-// Predicted rows of a table, all GPUs, as ratios; rows that decide a number would all stand at 1.
-Plot ratios(const GeometryValidation& validation) {
+// Predicted rows of a table, all GPUs; rows that decide a number would all stand at 0.
+Plot predicted_errors(const GeometryValidation& validation) {
     Plot plot;
-    plot.title = "Predicted rows: model over published";
-    plot.y_title = "ratio";
+    plot.title = "Predicted rows: ln(model / published)";
+    plot.y_title = "error";
     plot.bars = true;
     std::vector<std::string> gpus;
     for (const ValidationRow& row : validation.rows) {
@@ -65,7 +71,7 @@ Plot ratios(const GeometryValidation& validation) {
         for (const ValidationRow& row : validation.rows) {
             if (row.gpu != gpu || row.status != RowStatus::predicted) continue;
             const auto label = std::find(plot.labels.begin(), plot.labels.end(), row.key());
-            plot.lines.back().values[static_cast<std::size_t>(label - plot.labels.begin())] = row.ratio();
+            plot.lines.back().values[static_cast<std::size_t>(label - plot.labels.begin())] = row.log_error();
         }
     }
     return plot;
@@ -76,20 +82,18 @@ Plot ratios(const GeometryValidation& validation) {
 std::string validation_page(const GeometryValidation& validation, const std::vector<LeftOneOut>& entries) {
     const std::string intro = fmt::format(
         "<p>Geometry feed as published (Bavoil 2007, tables 3.1 to 3.4, figures 3.1 to 3.3) and as the model gives it. "
-        "A <b>calibrated</b> row determined a number of its GPU, or a number was chosen with it in view; a "
-        "<b>penalty</b> row states the size of a driver artefact; only <b>predicted</b> rows say how good the model "
-        "is. Numbers that were <b>measured</b> are printed in the tables; of the figures only what the text "
-        "<b>states</b> "
-        "is left, and what can be <b>derived</b> from both: where that is an interval, a model within it has a ratio "
-        "of 1.</p>\n<p class=\"note\">ropsim {} ({}); {}.</p>\n",
+        "{}</p>\n<p>{} Of the figures only what the text <b>states</b> is left, and what can be <b>derived</b> from "
+        "it and the tables: where that is an interval, a model within it has no error.</p>\n<p>Null model: {} "
+        "Skill: 1 - RMS error of the model over that of the null model, on the same rows.</p>\n<p><b>{}</b></p>\n"
+        "<p class=\"note\">ropsim {} ({}); {}.</p>\n",
+        error_reading, status_reading, geometry_null_model, escape_html(error_sentences(validation.summary.back())),
         version_text(), escape_html(build_text()), sim::enum_name(validation.fidelity));
-    std::vector<PageSection> sections{{"Errors of predicted rows", ""}, {"Rows", rows_html(validation)}};
-    for (const Table& table : validation_tables(validation, entries)) {
-        if (table.name == "summary.csv") sections.front().html = table_html(table);
+    std::vector<PageSection> sections{{"Errors of rows, in natural logarithms", error_summary_html(validation.summary)},
+                                      {"Rows", rows_html(validation)}};
+    for (const Table& table : validation_tables(validation, entries))
         if (table.name == "leave_one_out.csv")
             sections.push_back({"When another row determines a number (estimates)", table_html(table)});
-    }
-    return plot_page("Geometry feed: model and measurements", intro, {ratios(validation)}, sections);
+    return plot_page("Geometry feed: model and measurements", intro, {predicted_errors(validation)}, sections);
 }
 
 } // namespace reports

@@ -63,7 +63,7 @@ double Solver::milliseconds(const std::string& rows, const Values& values) const
 double Solver::wanted(const std::string& rows) const {
     double sign = 1, sum = 0;
     for (const std::string& row : rows_in(rows)) {
-        sum += sign * 1000 / find_row(*rows_, row).fps.at(gpu_);
+        sum += sign * 1000 / find_row(*rows_, row).fps.at(gpu_).value;
         sign = -1;
     }
     return sum;

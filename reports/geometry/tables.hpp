@@ -15,4 +15,7 @@ std::vector<Table> advice_tables(const GeometryAdvice& advice);
 /// there are entries.
 std::vector<Table> validation_tables(const GeometryValidation& validation, const std::vector<LeftOneOut>& entries);
 
+/// numbers.csv: one row per number that was fitted or scaled.
+Table calibration_table(const std::vector<GpuCalibration>& calibrations);
+
 } // namespace reports

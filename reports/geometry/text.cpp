@@ -2,6 +2,8 @@
 
 #include "reports/numbers.hpp"
 #include "reports/text_table.hpp"
+#include "reports/validation/error_report.hpp"
+#include "reports/validation/null_models.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -19,8 +21,6 @@ std::string rate_text(double number) {
 }
 
 std::string percent_text(double share) { return fmt::format("{:.1f}%", 100 * share); }
-
-std::string status_text(RowStatus status) { return std::string(sim::enum_name(status)); }
 
 std::string cases_text(const GeometryAdvice& advice, bool colour) {
     std::vector<std::vector<std::string>> rows;
@@ -118,11 +118,11 @@ std::string validation_text(const GeometryValidation& validation, TerminalStyle 
     std::string explanations;
     for (const ValidationRow& row : validation.rows) {
         rows.push_back({row.table, row.row, row.gpu, row.unit, published_text(row), rate_text(row.model),
-                        fmt::format("{:.3f}", row.ratio()), status_text(row.status),
-                        std::string(sim::enum_name(row.origin)), row.acmr > 0 ? fmt::format("{:.3f}", row.acmr) : "",
-                        row.limit});
-        if (row.error() > large_miss)
-            explanations += wrap(fmt::format("  {} on {} ({}): {}", row.key(), row.gpu, status_text(row.status),
+                        error_text(row.log_error()), error_in_sigma_text(row), row_status_text(row),
+                        row.null_model > 0 ? rate_text(row.null_model) : "",
+                        row.acmr > 0 ? fmt::format("{:.3f}", row.acmr) : "", row.limit});
+        if (row.missed())
+            explanations += wrap(fmt::format("  {} on {} ({}): {}", row.key(), row.gpu, row_status_text(row),
                                              row.explanation.empty() ? "not explained" : row.explanation),
                                  style.columns, 4);
     }
@@ -132,28 +132,18 @@ std::string validation_text(const GeometryValidation& validation, TerminalStyle 
                                    {"unit", "", true},
                                    {"published", ""},
                                    {"model", ""},
-                                   {"ratio", ""},
+                                   {"error", "ln"},
+                                   {"error", "sigma"},
                                    {"status", "", true},
-                                   {"published number", "", true},
+                                   {"null", ""},
                                    {"ACMR", ""},
                                    {"limit", "", true}},
                                   rows, style.colour);
-    rows.clear();
-    for (const ErrorSummary& summary : validation.summary)
-        for (const auto& [which, spread] :
-             {std::pair{"all", &summary.predicted}, std::pair{"measured", &summary.measured}})
-            rows.push_back({summary.gpu, which, std::to_string(spread->rows), percent_text(spread->median),
-                            percent_text(spread->worst), spread->worst_row});
-    text +=
-        "\nErrors of predicted rows, and of those among them whose number was measured (neither stated in words nor "
-        "derived):\n" +
-        text_table({{"GPU", "", true},
-                    {"which", "", true},
-                    {"rows", ""},
-                    {"median", ""},
-                    {"worst", ""},
-                    {"worst row", "", true}},
-                   rows, style.colour);
+    text += "\n" + wrap(std::string(error_reading), style.columns, 0) +
+            wrap(std::string(status_reading), style.columns, 0) +
+            wrap(fmt::format("Null model: {}", geometry_null_model), style.columns, 0) + "\n" +
+            error_summary_text(validation.summary, style.colour) + "\n" +
+            wrap(error_sentences(validation.summary.back()), style.columns, 0);
     if (!explanations.empty()) text += "\nMisses above 25%:\n" + explanations;
     return text;
 }
@@ -163,8 +153,8 @@ std::string leave_one_out_text(const std::vector<LeftOneOut>& entries, TerminalS
     for (const LeftOneOut& entry : entries)
         rows.push_back({entry.gpu, entry.parameter, entry.row, entry.instead_of, fmt::format("{:.4g}", entry.value),
                         fmt::format("{:.4g}", entry.usual_value),
-                        entry.found ? percent_text(entry.with_row.median) : "-",
-                        entry.found ? percent_text(entry.with_row.worst) : "-",
+                        entry.found ? fmt::format("{:.3f}", entry.with_row.median) : "-",
+                        entry.found ? fmt::format("{:.3f}", entry.with_row.worst) : "-",
                         entry.found ? entry.with_row.worst_row : "no value meets this row"});
     return "Predictions when another row determines a number (estimates):\n" + text_table({{"GPU", "", true},
                                                                                            {"number", "", true},
@@ -172,8 +162,8 @@ std::string leave_one_out_text(const std::vector<LeftOneOut>& entries, TerminalS
                                                                                            {"instead of", "", true},
                                                                                            {"value", ""},
                                                                                            {"usually", ""},
-                                                                                           {"median", ""},
-                                                                                           {"worst", ""},
+                                                                                           {"median", "|ln|"},
+                                                                                           {"worst", "|ln|"},
                                                                                            {"worst row", "", true}},
                                                                                           rows, style.colour);
 }

@@ -2,10 +2,10 @@
 
 #include "pipeline/functional/parallel.hpp"
 #include "reports/geometry/figures.hpp"
+#include "reports/validation/null_models.hpp"
 #include "sim/suggest.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <fmt/format.h>
 #include <iterator>
 #include <mutex>
@@ -13,56 +13,6 @@
 namespace reports {
 
 namespace {
-
-double median_of(std::vector<double> values) {
-    if (values.empty()) return 0;
-    std::sort(values.begin(), values.end());
-    const std::size_t half = values.size() / 2;
-    return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
-}
-
-ErrorSpread spread_of(const std::string& gpu, const std::vector<const ValidationRow*>& rows) {
-    ErrorSpread spread;
-    std::vector<double> errors;
-    for (const ValidationRow* row : rows) {
-        errors.push_back(row->error());
-        if (row->error() < spread.worst) continue;
-        spread.worst = row->error();
-        spread.worst_row = gpu == "all" ? fmt::format("{} on {}", row->key(), row->gpu) : row->key();
-    }
-    spread.rows = errors.size();
-    spread.median = median_of(std::move(errors));
-    return spread;
-}
-
-ErrorSummary summary_of(const std::string& gpu, const std::vector<ValidationRow>& rows) {
-    std::vector<const ValidationRow*> predicted, measured;
-    for (const ValidationRow& row : rows) {
-        if (row.status != RowStatus::predicted || (gpu != "all" && row.gpu != gpu)) continue;
-        predicted.push_back(&row);
-        if (row.origin == PublishedOrigin::measured) measured.push_back(&row);
-    }
-    return {gpu, spread_of(gpu, predicted), spread_of(gpu, measured)};
-}
-
-void check_gpus(const std::vector<std::string>& gpus, const std::vector<std::string>& known) {
-    for (const std::string& gpu : gpus)
-        if (std::find(known.begin(), known.end(), gpu) == known.end())
-            throw sim::InputError(fmt::format("--gpus: '{}' was not measured{}; expected of: {}", gpu,
-                                              sim::did_you_mean(gpu, known), fmt::join(known, ", ")));
-}
-
-ValidationRow unmeasured(const PublishedRow& published, const std::string& gpu, const CalibrationPlan& plan) {
-    ValidationRow row;
-    row.table = published.table;
-    row.row = published.row;
-    row.gpu = gpu;
-    row.low = row.high = published.fps.at(gpu);
-    apply_plan(row, plan);
-    if (const auto text = published.explanations.find(gpu); text != published.explanations.end())
-        row.explanation = text->second;
-    return row;
-}
 
 void measure(ValidationRow& row, const pipeline::GpuParams& gpu, const pipeline::Frame& frame,
              const GeometryRunOptions& options) {
@@ -75,23 +25,33 @@ void measure(ValidationRow& row, const pipeline::GpuParams& gpu, const pipeline:
 
 } // namespace
 
-double ValidationRow::error() const { return std::abs(ratio() - 1); }
+void check_measured(const std::vector<std::string>& gpus, const std::vector<std::string>& measured) {
+    for (const std::string& gpu : gpus)
+        if (std::find(measured.begin(), measured.end(), gpu) == measured.end())
+            throw sim::InputError(fmt::format("--gpus: '{}' was not measured{}; expected of: {}", gpu,
+                                              sim::did_you_mean(gpu, measured), fmt::join(measured, ", ")));
+}
+
+ValidationRow published_row(const PublishedRow& published, const std::string& gpu) {
+    ValidationRow row;
+    row.table = published.table;
+    row.row = published.row;
+    row.gpu = gpu;
+    const PrintedNumber& fps = published.fps.at(gpu);
+    row.low = row.high = fps.value;
+    row.sigma = fps.sigma();
+    if (const auto text = published.explanations.find(gpu); text != published.explanations.end())
+        row.explanation = text->second;
+    return row;
+}
 
 void apply_plan(ValidationRow& row, const CalibrationPlan& plan) {
     CalibrationKind kind{};
     row.parameter = plan.parameter_of(row.gpu, row.key(), kind);
     if (!row.parameter.empty())
         row.status = kind == CalibrationKind::penalty ? RowStatus::penalty : RowStatus::calibrated;
-}
-
-std::vector<ErrorSummary> summarise(const std::vector<ValidationRow>& rows) {
-    std::vector<std::string> gpus;
-    for (const ValidationRow& row : rows)
-        if (std::find(gpus.begin(), gpus.end(), row.gpu) == gpus.end()) gpus.push_back(row.gpu);
-    std::vector<ErrorSummary> list;
-    for (const std::string& gpu : gpus) list.push_back(summary_of(gpu, rows));
-    list.push_back(summary_of("all", rows));
-    return list;
+    apply_choices(row, plan.choices);
+    if (row.status == RowStatus::predicted && row.origin != PublishedOrigin::measured) row.status = RowStatus::derived;
 }
 
 namespace {
@@ -107,7 +67,8 @@ std::vector<ValidationRow> validate_tables(const std::vector<PublishedRow>& publ
             if (!published[i].fps.contains(gpu)) continue;
             const pipeline::GpuParams params = gpu_params(gpu);
             if (frame == nullptr) frame = prepare_frame(published[i].experiment, params).frame;
-            by_experiment[i].push_back(unmeasured(published[i], gpu, plan));
+            by_experiment[i].push_back(published_row(published[i], gpu));
+            apply_plan(by_experiment[i].back(), plan);
             measure(by_experiment[i].back(), params, *frame, options);
         }
         const std::lock_guard lock(mutex);
@@ -135,7 +96,7 @@ GeometryValidation validate_geometry(const std::vector<std::string>& gpus, const
     const std::vector<PublishedFigure> figures = load_published_figures();
     const CalibrationPlan plan = load_calibration_plan();
     const std::vector<std::string> known = measured_gpus(published);
-    check_gpus(gpus, known);
+    check_measured(gpus, known);
     const std::vector<std::string>& chosen = gpus.empty() ? known : gpus;
     constexpr double share_of_tables = 0.7; // of the time
     GeometryValidation validation;
@@ -143,6 +104,7 @@ GeometryValidation validate_geometry(const std::vector<std::string>& gpus, const
     validation.rows = validate_tables(published, plan, chosen, part_of(options, 0, share_of_tables));
     std::vector<ValidationRow> rows = validate_figures(figures, plan, chosen, part_of(options, share_of_tables, 1));
     std::move(rows.begin(), rows.end(), std::back_inserter(validation.rows));
+    apply_geometry_null_model(validation.rows);
     validation.summary = summarise(validation.rows);
     return validation;
 }

@@ -33,12 +33,14 @@ std::vector<Entry> entries_of(const GpuCalibration& calibration) {
     std::vector<Entry> entries;
     for (const CalibratedNumber& number : calibration.numbers)
         entries.emplace_back(number.step.parameter, number.value, "calibrated",
-                             fmt::format("{}{}; ropsim calibrate geometry", number.step.row,
-                                         number.step.kind == CalibrationKind::penalty ? " (driver penalty)" : ""));
+                             fmt::format("{}{}; {}", number.step.row,
+                                         number.step.kind == CalibrationKind::penalty ? " (driver penalty)" : "",
+                                         calibration.command));
     for (const ScaledNumber& number : calibration.scaled)
         entries.emplace_back(number.rule.parameter, number.value, "calibrated",
-                             fmt::format("that of {} by {}; ropsim calibrate geometry", number.rule.from,
-                                         number.rule.by == Scaling::memory ? "bandwidth of memory" : "vertex units"));
+                             fmt::format("that of {} by {}; {}", number.rule.from,
+                                         number.rule.by == Scaling::memory ? "bandwidth of memory" : "vertex units",
+                                         calibration.command));
     return entries;
 }
 

@@ -32,11 +32,12 @@ ordered_json bytes_json(const RunResult& run) {
 
 ordered_json chart_data(const Comparison& comparison) {
     ordered_json designs = ordered_json::array();
-    for (const RunResult& run : comparison.runs) {
-        const pipeline::HazardCounts& hazards = run.hazards;
-        designs.push_back({{"id", run.design},
+    for (std::size_t i = 0; i < comparison.runs.size(); ++i) {
+        const RunResult& run = comparison.runs[i];
+        designs.push_back({{"id", comparison.variants.at(i).label},
                            {"cycles", run.cycles},
-                           {"hazards", {hazards.h1, hazards.h2, hazards.h3, hazards.h4}},
+                           {"hazards", run.hazards.by},
+                           {"on_chip", on_chip_bytes(run).value_or(0.0)},
                            {"wrong_pixels", run.wrong_pixels},
                            {"stalls", stalls_json(run)},
                            {"bytes", bytes_json(run)},

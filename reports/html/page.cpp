@@ -59,6 +59,8 @@ std::string html_page(const Comparison& comparison, const std::vector<PictureFil
                                    "Designs compared on " + escape_html(comparison.scene.name));
     html += facts(comparison);
     html += section("summary", "Summary", summary_section(comparison) + files(tables));
+    html += section("hazards", "Hazards", hazards_section(comparison));
+    html += section("area", "On chip", area_section(comparison));
     html += "<section id=\"charts\" hidden><h2>Charts</h2><div class=\"charts\"></div></section>\n";
     html += section("pictures", "Pictures", pictures_section(comparison, pictures));
     html += section("passes", "Passes", passes_section(comparison));

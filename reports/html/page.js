@@ -1,4 +1,5 @@
-// Draws the charts from the JSON in #data: {activities: [name], designs: [{id, cycles, hazards: [h1..h4], wrong_pixels,
+// Draws the charts from the JSON in #data: {activities: [name], designs: [{id, cycles, on_chip, wrong_pixels,
+// hazards: [h1..h4 as [concurrency, incoherence]],
 // stalls: [{stage, fractions: [one per activity]}], bytes: {link: bytes per fragment}, distance: [hazards per bin]}]}.
 (function () {
   "use strict";
@@ -38,11 +39,25 @@
     options: { plugins: { legend: { display: false } }, scales: { y: axis("cycles") } }
   });
 
-  add("Hazards by class", {
+  // A class has one colour, full for concurrency and pale for incoherence.
+  const classNames = ["H1 in flight", "H2 write path", "H3 stale line", "H4 torn read"];
+  const kindNames = ["concurrency", "incoherence"];
+  const hazardSets = [];
+  kindNames.forEach((kindName, kind) => classNames.forEach((className, cause) => {
+    const counts = designs.map(d => d.hazards[cause][kind]);
+    if (counts.some(count => count > 0)) hazardSets.push({ label: className + ", " + kindName, data: counts,
+      backgroundColor: hazardColours[cause] + (kind ? "70" : "") });
+  }));
+  if (hazardSets.length) add("Hazards by kind and class", {
     type: "bar",
-    data: { labels: names, datasets: ["H1 in flight", "H2 write path", "H3 stale line", "H4 torn read"].map((label, kind) =>
-      ({ label: label, data: designs.map(d => d.hazards[kind]), backgroundColor: hazardColours[kind] })) },
+    data: { labels: names, datasets: hazardSets },
     options: stacked({}, axis("fragments"))
+  });
+
+  if (designs.some(d => d.on_chip > 0)) add("Time and on-chip memory", {
+    type: "scatter",
+    data: { datasets: designs.map((d, i) => ({ label: d.id, data: [{ x: d.on_chip / 1024, y: d.cycles }], backgroundColor: colourOf(i), pointRadius: 6 })) },
+    options: { scales: { x: axis("KiB on chip"), y: axis("cycles") } }
   });
 
   const links = [];

@@ -15,8 +15,8 @@ nlohmann::ordered_json plot_json(const Plot& plot) {
     nlohmann::ordered_json lines = nlohmann::ordered_json::array();
     for (const PlotLine& line : plot.lines) lines.push_back({{"name", line.name}, {"values", line.values}});
     return {
-        {"title", plot.title}, {"x", plot.x_title},     {"y", plot.y_title},        {"logarithmic", plot.logarithmic},
-        {"bars", plot.bars},   {"labels", plot.labels}, {"lines", std::move(lines)}};
+        {"title", plot.title}, {"x", plot.x_title},       {"y", plot.y_title},     {"logarithmic", plot.logarithmic},
+        {"bars", plot.bars},   {"tornado", plot.tornado}, {"labels", plot.labels}, {"lines", std::move(lines)}};
 }
 
 } // namespace

@@ -16,6 +16,8 @@ struct Plot {
     std::string title, x_title, y_title;
     bool logarithmic = false; ///< along x, where all labels are numbers
     bool bars = false;
+    bool tornado =
+        false; ///< horizontal bars from 0, one label a row, the lines over each other; x_title names the axis
     std::vector<std::string> labels;
     std::vector<PlotLine> lines;
 };

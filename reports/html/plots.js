@@ -1,4 +1,4 @@
-// Draws the plots from the JSON in #data: [{title, x, y, logarithmic, bars, labels: [text], lines: [{name, values}]}].
+// Draws the plots from the JSON in #data: [{title, x, y, logarithmic, bars, tornado, labels: [text], lines: [{name, values}]}].
 (function () {
   "use strict";
   if (typeof Chart === "undefined") return;
@@ -18,6 +18,16 @@
     canvas.setAttribute("aria-label", plot.title);
     box.appendChild(canvas);
     place.appendChild(box);
+    if (plot.tornado) {
+      new Chart(canvas, {
+        type: "bar",
+        data: { labels: plot.labels, datasets: plot.lines.map((line, i) =>
+          ({ label: line.name, data: line.values, backgroundColor: colours[i % colours.length], grouped: false, barPercentage: .8 })) },
+        options: { indexAxis: "y", plugins: { title: { display: true, text: plot.title } },
+          scales: { x: axis(plot.x), y: { ticks: { autoSkip: false } } } }
+      });
+      return;
+    }
     const numbers = plot.labels.map(Number);
     const numeric = !plot.bars && numbers.every(n => Number.isFinite(n));
     const x = axis(plot.x);

@@ -2,6 +2,7 @@
 
 #include "reports/counter_rows.hpp"
 #include "reports/flatten.hpp"
+#include "reports/hazard_text.hpp"
 #include "reports/html/markup.hpp"
 #include "reports/left_out.hpp"
 #include "reports/numbers.hpp"
@@ -21,24 +22,25 @@ HtmlCell number(std::uint64_t value) { return {with_commas(value), "number"}; }
 HtmlCell number(const std::string& text) { return {text, "number"}; }
 HtmlCell error_number(std::uint64_t value) { return {with_commas(value), value > 0 ? "number bad" : "number"}; }
 
-std::vector<HtmlCell> summary_row(const RunResult& run, const RunResult& first) {
+std::vector<HtmlCell> summary_row(const RunResult& run, const std::string& label, const RunResult& base) {
     const pipeline::HazardCounts& hazards = run.hazards;
-    const auto dram = bytes_per_fragment(run, "dram");
-    const double relative = run.cycles > 0 && first.cycles > 0 ? milliseconds(first) / milliseconds(run) : 0.0;
-    return {{run.design, "name"},
+    const auto dram = bytes_per_fragment(run, "dram"), area = on_chip_bytes(run);
+    const double relative = run.cycles > 0 && base.cycles > 0 ? milliseconds(base) / milliseconds(run) : 0.0;
+    return {{label, "name"},
             number(run.cycles),
             number(fmt::format("{:.3f}", milliseconds(run))),
-            number(short_number(frames_per_second(run))),
             number(fmt::format("{:.2f}", relative)),
-            number(run.fragments),
-            error_number(hazards.h1),
-            error_number(hazards.h2),
-            error_number(hazards.h3),
-            error_number(hazards.h4),
-            number(short_number(hazards_per_million(run))),
+            error_number(hazards.of(pipeline::HazardKind::concurrency)),
+            error_number(hazards.of(pipeline::HazardKind::incoherence)),
             {with_commas(run.wrong_pixels), run.wrong_pixels > 0 ? "number bad" : "number good"},
-            error_number(run.lost_fragments),
+            number(area ? fmt::format("{:.1f}", *area / 1024) : "-"),
             number(dram ? fmt::format("{:.1f}", *dram) : "-"),
+            number(run.fragments),
+            error_number(hazards.total()),
+            number(short_number(hazards_per_million(run))),
+            error_number(run.lost_fragments),
+            error_number(run.lost_updates),
+            number(short_number(frames_per_second(run))),
             number(short_number(cycles_per_second(run)))};
 }
 
@@ -67,15 +69,77 @@ std::string figures_of(const Comparison& comparison, const std::vector<PictureFi
 
 std::string summary_section(const Comparison& comparison) {
     std::vector<std::vector<HtmlCell>> rows;
-    for (const RunResult& run : comparison.runs) rows.push_back(summary_row(run, comparison.runs.front()));
-    return html_table({"design", "core cycles", "time [ms]", "frames/s", "relative speed", "fragments", "H1", "H2",
-                       "H3", "H4", "hazards per million", "wrong pixels", "lost fragments", "DRAM bytes per fragment",
+    const RunResult& base = comparison.runs.at(comparison.base_run());
+    for (std::size_t i = 0; i < comparison.runs.size(); ++i)
+        rows.push_back(summary_row(comparison.runs[i], comparison.variants.at(i).label, base));
+    return html_table({"design", "core cycles", "time [ms]", "relative speed", "hazards by concurrency",
+                       "hazards by incoherence", "wrong pixels", "on chip [KiB]", "DRAM bytes per fragment",
+                       "fragments", "hazards", "hazards per million", "lost fragments", "lost updates", "frames/s",
                        "host cycles/s"},
                       rows) +
-           "<p class=\"note\">H1: the predecessor was still in flight. H2: it was in the write path. H3: the texture "
-           "cache line was stale. H4: the render targets of one read held different versions. Wrong pixels differ in "
-           "any bit from the frame computed in submission order; lost fragments are entries of that frame which no "
-           "layer holds.</p>\n";
+           fmt::format("<p class=\"note\">Speed is relative to {}. Wrong pixels differ in any bit from the frame "
+                       "computed in submission order; lost fragments are entries of that frame which no layer holds; "
+                       "a lost update was overwritten by a stale value. On chip: tile caches, payloads that wait, and "
+                       "what the design adds.</p>\n",
+                       escape_html(comparison.variants.at(comparison.base_run()).label));
+}
+
+std::string hazards_section(const Comparison& comparison) {
+    std::vector<std::vector<HtmlCell>> rows;
+    for (std::size_t i = 0; i < comparison.runs.size(); ++i)
+        for (const auto kind : {pipeline::HazardKind::concurrency, pipeline::HazardKind::incoherence}) {
+            const RunResult& run = comparison.runs[i];
+            if (run.hazards.total() == 0) continue;
+            std::vector<HtmlCell> row{{comparison.variants.at(i).label, "name"}, {std::string(hazard_name(kind)), ""}};
+            for (const auto& cells : run.hazards.by) row.push_back(number(cells[static_cast<std::size_t>(kind)]));
+            row.push_back(error_number(run.hazards.of(kind)));
+            row.push_back(number(short_number(hazards_per_million(run, kind))));
+            rows.push_back(std::move(row));
+        }
+    if (rows.empty()) return "<p>No design had a hazard.</p>\n";
+    return html_table({"design", "kind", "H1 in flight", "H2 write path", "H3 stale line", "H4 torn read", "total",
+                       "per million fragments"},
+                      rows) +
+           fmt::format("<p class=\"note\">{} {}</p>\n", hazard_kinds_explained, hazard_classes_explained);
+}
+
+std::string area_section(const Comparison& comparison) {
+    std::vector<std::vector<HtmlCell>> rows;
+    for (std::size_t i = 0; i < comparison.runs.size(); ++i) {
+        const nlohmann::ordered_json& area = comparison.runs[i].area;
+        if (!area.contains("total_bytes")) continue;
+        std::string added;
+        for (const auto& memory : area.at("added").items())
+            added += fmt::format("{}{}: {}", added.empty() ? "" : ", ", memory.key(),
+                                 with_commas(memory.value().get<std::uint64_t>()));
+        const auto bytes = [&area](const char* name) { return number(area.at(name).get<std::uint64_t>()); };
+        rows.push_back({{comparison.variants.at(i).label, "name"},
+                        bytes("tile_cache_bytes"),
+                        bytes("payload_bytes"),
+                        bytes("added_bytes"),
+                        bytes("total_bytes"),
+                        {added.empty() ? "nothing" : added, ""},
+                        bytes("added_comparators"),
+                        bytes("added_alu_lanes")});
+    }
+    if (comparison.equal_area)
+        for (const EqualArea::Unfit& unfit : comparison.equal_area->does_not_fit)
+            rows.push_back({{unfit.variant.label, "name"},
+                            {"does not fit", "bad"},
+                            {},
+                            {},
+                            {with_commas(unfit.needed), "number bad"},
+                            {"needed with the smallest tile caches", ""},
+                            {},
+                            {}});
+    const std::string equal =
+        comparison.equal_area
+            ? fmt::format("<p>Every design has {} bytes; its tile caches have what is left beside all else.</p>\n",
+                          with_commas(comparison.equal_area->bytes))
+            : "";
+    return equal + html_table({"design", "tile caches [B]", "payloads [B]", "added [B]", "total [B]",
+                               "what is added [B]", "comparators", "ALU lanes"},
+                              rows);
 }
 
 std::string pictures_section(const Comparison& comparison, const std::vector<PictureFile>& pictures) {
@@ -85,8 +149,9 @@ std::string pictures_section(const Comparison& comparison, const std::vector<Pic
         grid(figures_of(comparison, pictures, "reference", false) + figures_of(comparison, pictures, "", false));
     const std::string layers = figures_of(comparison, pictures, "reference", true);
     if (!layers.empty()) html += html_details("layers of the reference", grid(layers));
-    for (const RunResult& run : comparison.runs) {
-        html += fmt::format("<h3>{}</h3>\n{}", escape_html(run.design),
+    for (std::size_t i = 0; i < comparison.runs.size(); ++i) {
+        const RunResult& run = comparison.runs[i];
+        html += fmt::format("<h3>{}</h3>\n{}", escape_html(comparison.variants.at(i).label),
                             grid(figures_of(comparison, pictures, run.design, false)));
         const std::string own_layers = figures_of(comparison, pictures, run.design, true);
         if (!own_layers.empty()) html += html_details("layers of " + run.design, grid(own_layers));

@@ -11,6 +11,10 @@
 namespace reports {
 
 std::string summary_section(const Comparison& comparison);
+/// Classes by kinds of each design; they add up to its hazards.
+std::string hazards_section(const Comparison& comparison);
+/// On-chip bytes of each design.
+std::string area_section(const Comparison& comparison);
 std::string pictures_section(const Comparison& comparison, const std::vector<PictureFile>& pictures);
 std::string passes_section(const Comparison& comparison);
 std::string needs_section(const Comparison& comparison);

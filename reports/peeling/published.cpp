@@ -3,7 +3,6 @@
 #include "reports/toml_reader.hpp"
 #include "sim/check.hpp"
 
-#include <charconv>
 #include <cmath>
 #include <fmt/format.h>
 #include <numbers>
@@ -12,6 +11,7 @@ namespace reports {
 
 namespace {
 
+constexpr const char* peeling_file = "reports/published/peeling.toml";
 constexpr std::uint64_t triangles_per_box = 12;
 
 PeelingDataset dataset_of(TomlTable& table) {
@@ -29,25 +29,37 @@ PeelingDataset dataset_of(TomlTable& table) {
     return dataset;
 }
 
-PeelingMeasurement row_of(TomlTable& table) {
+PeelingMeasurement measurement_of(TomlTable& table) {
     PeelingMeasurement row;
     row.dataset = table.text("dataset");
     row.buffer = table.text("buffer");
     row.k = static_cast<std::uint32_t>(table.number("k"));
     row.entry = table.text("entry");
     for (std::size_t i = 0; i < peeling_columns; ++i)
-        row.fps[i] = printed_number(table.text(sim::EnumNames<PeelingColumn>::names[i]));
+        row.fps[i] = printed_number(table.text(sim::EnumNames<PeelingColumn>::names[i]), peeling_file);
     return row;
 }
 
-PeelingNote note_of(TomlTable& table, bool decides) {
+PeelingNote note_of(TomlTable& table) {
     PeelingNote note;
     note.dataset = table.text("dataset");
     note.buffer = table.text("buffer");
     note.column = table.text("column");
-    if (decides) note.parameter = table.text("parameter");
-    note.text = table.text(decides ? "reason" : "text");
+    note.text = table.text("text");
     return note;
+}
+
+PeelingStep peeling_step_of(TomlTable& table) {
+    PeelingStep step;
+    step.dataset = table.text("dataset");
+    step.buffer = table.text("buffer");
+    step.column = choice<PeelingColumn>(table, "column", sim::EnumNames<PeelingColumn>::names);
+    step.parameter = table.text("parameter");
+    step.low = table.number("low");
+    step.high = table.number("high");
+    if (!(step.low > 0 && step.low < step.high)) table.expected("low", "a number above 0 and below high");
+    step.reason = table.text("reason");
+    return step;
 }
 
 std::string replaced(std::string text, std::string_view what, std::uint64_t number) {
@@ -85,33 +97,30 @@ std::string PeelingDataset::camera_of(std::uint64_t size) const {
     return fmt::format("{},{},{:.9g}", eye, target, angle);
 }
 
-PrintedNumber printed_number(const std::string& text) {
-    PrintedNumber number;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number.value);
-    if (error != std::errc{} || end != text.data() + text.size() || !(number.value > 0) || !std::isfinite(number.value))
-        throw sim::InputError(fmt::format("reports/published/peeling.toml: '{}': expected a number above 0", text));
-    const std::size_t point = text.find('.');
-    const std::size_t digits = point == std::string::npos ? 0 : text.size() - point - 1;
-    number.half_digit = 0.5 * std::pow(10.0, -static_cast<double>(digits));
-    return number;
-}
-
 const PeelingDataset& PublishedPeeling::dataset(const std::string& name) const {
     for (const PeelingDataset& one : datasets)
         if (one.name == name) return one;
-    throw sim::InputError(fmt::format("reports/published/peeling.toml: no dataset is called '{}'", name));
+    throw sim::InputError(fmt::format("{}: no dataset is called '{}'", peeling_file, name));
+}
+
+const PeelingMeasurement& PublishedPeeling::row(const std::string& dataset, const std::string& buffer) const {
+    for (const PeelingMeasurement& one : rows)
+        if (one.dataset == dataset && one.buffer == buffer) return one;
+    throw sim::InputError(fmt::format("{}: no row is called '{}, {}'", peeling_file, dataset, buffer));
 }
 
 PublishedPeeling load_published_peeling() {
     PublishedPeeling published;
-    read_data_file("reports/published/peeling.toml", [&](TomlTable& root) {
+    read_data_file(peeling_file, [&](TomlTable& root) {
         published.source = root.text("source");
         published.gpu = root.text("gpu");
         root.tables("datasets", [&](TomlTable& table) { published.datasets.push_back(dataset_of(table)); });
-        root.tables("rows", [&](TomlTable& table) { published.rows.push_back(row_of(table)); });
-        root.tables("calibrated", [&](TomlTable& table) { published.calibrated.push_back(note_of(table, true)); });
-        root.tables("explanations", [&](TomlTable& table) { published.explanations.push_back(note_of(table, false)); });
+        root.tables("rows", [&](TomlTable& table) { published.rows.push_back(measurement_of(table)); });
+        root.tables("calibrated", [&](TomlTable& table) { published.calibrated.push_back(peeling_step_of(table)); });
+        root.tables("repeats", [&](TomlTable& table) { published.repeats.push_back(note_of(table)); });
+        root.tables("explanations", [&](TomlTable& table) { published.explanations.push_back(note_of(table)); });
     });
+    published.choices = load_choices("peeling");
     return published;
 }
 

@@ -1,7 +1,8 @@
 // The published measurements of depth peeling, their stand-ins and what they calibrate, from reports/published.
 #pragma once
 
-#include "reports/geometry/validation.hpp"
+#include "reports/validation/choices.hpp"
+#include "reports/validation/printed_number.hpp"
 
 #include <array>
 #include <cstdint>
@@ -38,18 +39,6 @@ struct PeelingDataset {
     std::string camera_of(std::uint64_t size) const;
 };
 
-/// A number as it was printed.
-struct PrintedNumber {
-    double value = 0;
-    double half_digit = 0; ///< half a unit of the last digit that was printed
-
-    double low() const { return value - half_digit; }
-    double high() const { return value + half_digit; }
-};
-
-/// "41.4": 41.4 +- 0.05. Throws sim::InputError for what is no number above 0.
-PrintedNumber printed_number(const std::string& text);
-
 struct PeelingMeasurement {
     std::string dataset, buffer; ///< "Dragon", "4 RGBZ"
     std::uint32_t k = 4;
@@ -57,19 +46,31 @@ struct PeelingMeasurement {
     std::array<PrintedNumber, peeling_columns> fps;
 };
 
-/// Of one number of the table: the parameter that it decides, or why the model misses it.
+/// Of one number of the table: why the model misses it, or why it is another number again.
 struct PeelingNote {
-    std::string dataset, buffer, column, parameter, text;
+    std::string dataset, buffer, column, text;
+};
+
+/// The number of the table that decides a parameter of the GPU.
+struct PeelingStep {
+    std::string dataset, buffer;
+    PeelingColumn column{};
+    std::string parameter;
+    double low = 0, high = 0; ///< between which the parameter is looked for
+    std::string reason;
 };
 
 struct PublishedPeeling {
     std::string source, gpu;
     std::vector<PeelingDataset> datasets;
     std::vector<PeelingMeasurement> rows;
-    std::vector<PeelingNote> calibrated;
+    std::vector<PeelingStep> calibrated; ///< in the order in which they are solved
+    std::vector<PeelingNote> repeats;    ///< printed more than once: counted once
     std::vector<PeelingNote> explanations;
+    std::vector<Choice> choices; ///< made with numbers of the table in view
 
     const PeelingDataset& dataset(const std::string& name) const;
+    const PeelingMeasurement& row(const std::string& dataset, const std::string& buffer) const;
 };
 
 /// Throws sim::InputError naming file and place when it is not as expected.

@@ -12,7 +12,8 @@ namespace reports {
 
 std::string peeling_text(const PeelingValidation& validation, TerminalStyle style);
 nlohmann::ordered_json peeling_json(const PeelingValidation& validation);
-Table peeling_table(const PeelingValidation& validation);
+/// validation.csv: one row per number; summary.csv.
+std::vector<Table> peeling_tables(const PeelingValidation& validation);
 std::string peeling_page(const PeelingValidation& validation);
 
 } // namespace reports

@@ -40,7 +40,7 @@ std::vector<std::string> shrunk_limits(const PublishedPeeling& published, const 
 }
 
 ComparisonRequest request_of(const PublishedPeeling& published, const PeelingMeasurement& row, std::uint64_t triangles,
-                             const std::vector<std::string>& gpu_settings) {
+                             const std::vector<std::string>& gpu_settings, const PeelingColumns& columns) {
     const PeelingDataset& dataset = published.dataset(row.dataset);
     ComparisonRequest request;
     request.scene = dataset.scene_of(triangles);
@@ -50,8 +50,7 @@ ComparisonRequest request_of(const PublishedPeeling& published, const PeelingMea
     request.gpu = published.gpu;
     request.gpu_settings = shrunk_limits(published, dataset, static_cast<double>(triangles));
     request.gpu_settings.insert(request.gpu_settings.end(), gpu_settings.begin(), gpu_settings.end());
-    for (std::size_t i = 0; i < peeling_columns; ++i)
-        request.designs.push_back(design_of(static_cast<PeelingColumn>(i)));
+    for (const PeelingColumn column : columns) request.designs.push_back(design_of(column));
     request.threads = 1;
     return request;
 }
@@ -78,15 +77,17 @@ std::vector<Secant> secants_of(const std::vector<double>& x, const std::vector<d
 } // namespace
 
 StandInRun run_stand_in(const PublishedPeeling& published, const PeelingMeasurement& row, std::uint64_t triangles,
-                        const std::vector<std::string>& gpu_settings, const std::atomic<bool>* stop) {
+                        const std::vector<std::string>& gpu_settings, const std::atomic<bool>* stop,
+                        const PeelingColumns& columns) {
     const Supervision supervision{stop, nullptr, nullptr};
     const Comparison comparison =
-        compare(prepare(request_of(published, row, triangles, gpu_settings), supervision), supervision);
+        compare(prepare(request_of(published, row, triangles, gpu_settings, columns), supervision), supervision);
     StandInRun result;
     result.triangles = comparison.scene.triangles_drawn;
-    for (std::size_t i = 0; i < peeling_columns; ++i) {
+    for (std::size_t i = 0; i < columns.size(); ++i) {
         const pipeline::RunResult& run = comparison.runs[i];
-        result.milliseconds[i] = static_cast<double>(run.cycles) / (run.core_mhz * 1e3) + run.sort_milliseconds;
+        result.milliseconds[static_cast<std::size_t>(columns[i])] =
+            static_cast<double>(run.cycles) / (run.core_mhz * 1e3) + run.sort_milliseconds;
     }
     result.host_seconds = comparison.host.seconds;
     return result;

@@ -4,6 +4,7 @@
 #include "reports/peeling/published.hpp"
 
 #include <array>
+#include <atomic>
 #include <vector>
 
 namespace reports {
@@ -11,15 +12,19 @@ namespace reports {
 /// One run of each column.
 struct StandInRun {
     std::uint64_t triangles = 0;
-    std::array<double, peeling_columns> milliseconds{};
+    std::array<double, peeling_columns> milliseconds{}; ///< 0: not run
     double host_seconds = 0;
 };
 
-/// Runs the columns on a stand-in of `triangles` triangles, in full detail. What a mesh is compared with is as much
+/// Which columns are run.
+using PeelingColumns = std::vector<PeelingColumn>;
+
+/// Runs columns on a stand-in of `triangles` triangles, in full detail. What a mesh is compared with is as much
 /// smaller as the stand-in is: video memory, the driver's limits of index ranges, and for surfaces the cache of
 /// vertices, whose lines are met again in the next row of the mesh. `gpu_settings` are "section.key=value".
 StandInRun run_stand_in(const PublishedPeeling& published, const PeelingMeasurement& row, std::uint64_t triangles,
-                        const std::vector<std::string>& gpu_settings = {}, const std::atomic<bool>* stop = nullptr);
+                        const std::vector<std::string>& gpu_settings = {}, const std::atomic<bool>* stop = nullptr,
+                        const PeelingColumns& columns = {PeelingColumn::mp, PeelingColumn::sp, PeelingColumn::spwh});
 
 /// A value read off a straight line behind its last point.
 struct LineValue {

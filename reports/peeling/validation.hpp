@@ -2,6 +2,7 @@
 #pragma once
 
 #include "reports/peeling/stand_in.hpp"
+#include "reports/validation/validation_row.hpp"
 
 #include <functional>
 #include <string>
@@ -16,9 +17,10 @@ enum class PeelingFidelity : std::uint8_t {
 
 /// A number of the table, or one that follows from its row.
 struct PeelingNumber {
-    ValidationRow row;      ///< low and high: the rounding range of what was published
-    double printed = 0;     ///< as printed, or what follows from the numbers as printed
-    double half_digit = 0;  ///< of a printed number
+    ValidationRow row;
+    std::string mesh;
+    double passes = 0;      ///< geometry passes of a frame: k of MP, 1 of SP; 0: not a number of these columns
+    double batches = 0;     ///< of SPwH; 0: not a number of this column
     double uncertainty = 0; ///< share by which the line through the stand-ins may miss; 0: run whole
 };
 
@@ -37,9 +39,20 @@ struct PeelingOptions {
     std::function<void(double)> progress; ///< share done, 0 to 1; never called by two threads at once
 };
 
-/// The numbers of one row of the table, from the runs of its dataset's stand-ins or of the whole mesh.
+/// Triangles of the stand-ins of a dataset; of the whole mesh alone where it is run.
+std::vector<std::uint64_t> peeling_sizes(const PeelingDataset& dataset, PeelingFidelity fidelity);
+
+/// A number of the table as it was printed, with its status, without the model.
+ValidationRow published_peeling_row(const PublishedPeeling& published, const PeelingMeasurement& row,
+                                    PeelingColumn column);
+
+/// The numbers of one row of the table, from the runs of its dataset's stand-ins or of the whole mesh; without what the
+/// null model says.
 std::vector<PeelingNumber> peeling_numbers(const PublishedPeeling& published, const PeelingMeasurement& row,
                                            const std::vector<StandInRun>& runs);
+
+/// Sets what the null model says of the numbers of all rows, and sums up.
+ErrorSummary summarise_peeling(std::vector<PeelingNumber>& numbers);
 
 PeelingValidation validate_peeling(const PublishedPeeling& published, const PeelingOptions& options);
 

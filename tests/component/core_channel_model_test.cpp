@@ -3,7 +3,7 @@
 
 #include <rapidcheck/gtest.h>
 
-namespace {
+namespace core_channel_model_test {
 
 using sim::Cycle;
 
@@ -61,4 +61,4 @@ RC_GTEST_PROP(ChannelModel, AgreesInAllModes, ()) {
     RC_ASSERT(simulate(test, sim::Mode::never_sleep) == expected);
 }
 
-} // namespace
+} // namespace core_channel_model_test

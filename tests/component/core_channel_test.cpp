@@ -3,7 +3,7 @@
 
 #include "sim/check.hpp"
 
-namespace {
+namespace core_channel_test {
 
 using sim::Cycle;
 using Cycles = std::vector<Cycle>;
@@ -223,4 +223,4 @@ TEST(Channel, CountsWhatPassed) {
     EXPECT_TRUE(sink.in.drained());
 }
 
-} // namespace
+} // namespace core_channel_test

@@ -3,7 +3,7 @@
 
 #include <numeric>
 
-namespace {
+namespace core_order_test {
 
 using tests::Network;
 using tests::Observed;
@@ -143,4 +143,4 @@ TEST(Order, SleepingSavesTicks) {
     EXPECT_GE(ticks(sim::Mode::never_sleep), 4000U);
 }
 
-} // namespace
+} // namespace core_order_test

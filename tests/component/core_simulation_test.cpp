@@ -7,7 +7,7 @@
 #include <map>
 #include <numeric>
 
-namespace {
+namespace core_simulation_test {
 
 using sim::Activity;
 using sim::Cycle;
@@ -477,4 +477,4 @@ TEST(Observer, SlicesTileTheTimeOfEveryComponent) {
     }
 }
 
-} // namespace
+} // namespace core_simulation_test

@@ -5,7 +5,7 @@
 
 #include <optional>
 
-namespace {
+namespace fragment_lock_table_test {
 
 using pipeline::Commit;
 using pipeline::CriticalSection;
@@ -62,8 +62,6 @@ LockRequest ask(std::uint32_t quad, std::uint16_t thread, std::uint32_t ticket =
 
 Commit leave(std::uint32_t quad, std::uint8_t mask = 15) { return {pipeline::no_slot, quad, mask, QuadKind::quad}; }
 
-} // namespace
-
 TEST(LockTable, AFreeLockIsGrantedTheCycleItIsAskedFor) {
     const Bench bench(CriticalSection::ordered, LockArea::pixel, {ask(0, 7)}, {});
     EXPECT_EQ(bench.grants->cycles(), (Cycles{2})); // sent at 0, here at 1, back at 2
@@ -115,3 +113,5 @@ TEST(LockTable, AQuadTakesAllItsPixelsOrNone) {
     EXPECT_EQ(bench.order(), (std::vector<std::uint16_t>{1, 3, 2}));
     EXPECT_EQ(bench.grants->cycles(), (Cycles{2, 2, 62}));
 }
+
+} // namespace fragment_lock_table_test

@@ -3,7 +3,7 @@
 
 #include <set>
 
-namespace {
+namespace fragment_pipeline_kbuffer_test {
 
 using Cycles = std::vector<sim::Cycle>;
 using pipeline::QuadKind;
@@ -20,14 +20,14 @@ ShaderSite site(TextureCoherence coherence = TextureCoherence::none) {
     return site;
 }
 
-/// One render target, and a program of three scalar operations: it issues in one cycle after the shader's own.
+/// One render target, and a program of three scalar operations: it issues in one cycle, like the shader before it.
 struct OneTarget : tests::QuadPass {
     OneTarget() : QuadPass(64, 64, 1, 1, "z") {}
 };
 
-constexpr sim::Cycle issue = 2;                      ///< of the shader and the program
-constexpr sim::Cycle looked_up = 1 + 30 + issue - 1; ///< the L1 lookup of a quad that is received at cycle 1
-constexpr sim::Cycle unit = 4;                       ///< texture unit time of one render target
+constexpr sim::Cycle through = 30;            ///< the pipe, once before the read and once behind it
+constexpr sim::Cycle looked_up = 1 + through; ///< the L1 lookup of a quad that is received at cycle 1
+constexpr sim::Cycle unit = 4;                ///< texture unit time of one render target
 constexpr sim::Cycle hit_latency = 40;
 
 TEST(FragmentPipelineKBuffer, MissIsServedByTheMemorySideAndSampledThere) {
@@ -40,7 +40,7 @@ TEST(FragmentPipelineKBuffer, MissIsServedByTheMemorySideAndSampledThere) {
     EXPECT_EQ(bench.kbuffer->reads[0].targets, 1U);
     EXPECT_EQ(bench.kbuffer->cycles[0], looked_up + 1);
     EXPECT_EQ(bench.read_at(0), looked_up + 1 + 100);
-    EXPECT_EQ(bench.done(0), looked_up + 1 + 100 + 1 + 1); // two links
+    EXPECT_EQ(bench.done(0), looked_up + 1 + 100 + 1 + through + 1); // two links
     EXPECT_EQ(bench.pipe.stats().l1.kbuffer_misses, 1U);
     EXPECT_EQ(bench.pipe.stats().kbuffer_reads, 1U);
 }
@@ -54,8 +54,26 @@ TEST(FragmentPipelineKBuffer, HitSamplesTheSnapshotAtTheLookup) {
     EXPECT_EQ(bench.kbuffer->reads.size(), 1U);
     EXPECT_EQ(bench.read_at(1), 1000 + looked_up);
     EXPECT_EQ(bench.read_version(1), 0U);
-    EXPECT_EQ(bench.done(1), 1000 + looked_up + unit + hit_latency + 1);
+    EXPECT_EQ(bench.done(1), 1000 + looked_up + unit + hit_latency + through + 1);
     EXPECT_EQ(bench.pipe.stats().l1.kbuffer_hits, 1U);
+}
+
+// A value that comes back is worked on by the whole pipe again: its program issues for as many cycles as it has vector
+// instructions, before quads that have not started.
+TEST(FragmentPipelineKBuffer, ProgramBehindTheReadIsASecondWayThroughThePipe) {
+    for (const std::uint32_t instructions : {1U, 2U, 9U, 40U}) {
+        OneTarget pass;
+        for (std::uint32_t i = 0; i < 2; ++i) pass.quad(8 * i, 0);
+        pass.context.shader_costs[0].behind_read = instructions;
+        PipeBench bench(pass, {.fragment = {.alu_per_clk = 2}, .site = site(), .kbuffer_latency = 100});
+        bench.run();
+        const sim::Cycle issue = (instructions + 1) / 2;
+        const sim::Cycle back = looked_up + 1 + 100 + 1;
+        EXPECT_EQ(bench.done(0), back + through + issue - 1 + 1);
+        EXPECT_EQ(bench.done(1),
+                  std::max<sim::Cycle>(back + 4, back + issue) + through + issue - 1 + 1); // texture unit
+        EXPECT_EQ(bench.pipe.stats().issue_cycles, 2 + 2 * issue);
+    }
 }
 
 TEST(FragmentPipelineKBuffer, BypassReadsTheMemorySideEveryTime) {
@@ -81,7 +99,7 @@ TEST(FragmentPipelineKBuffer, ReadsOfALineOnItsWayJoinIt) {
     EXPECT_EQ(bench.pipe.stats().l1.kbuffer_merged, 4U);
     for (std::uint32_t i = 0; i < 5; ++i) {
         EXPECT_EQ(bench.read_at(i), looked_up + 1 + 300);
-        EXPECT_EQ(bench.done(i), looked_up + 1 + 300 + 2 + i); // results leave one a cycle
+        EXPECT_EQ(bench.done(i), looked_up + 1 + 300 + 2 + through + i); // one program issues a cycle
     }
 }
 
@@ -258,4 +276,4 @@ TEST(FragmentPipelineKBuffer, SameInAllModes) {
     }
 }
 
-} // namespace
+} // namespace fragment_pipeline_kbuffer_test

@@ -2,9 +2,11 @@
 #include "pipeline/functional/depth_format.hpp"
 #include "tests/support/pipe_kit.hpp"
 
+#include <memory>
 #include <numeric>
+#include <vector>
 
-namespace {
+namespace fragment_pipeline_test {
 
 using Cycles = std::vector<sim::Cycle>;
 using pipeline::DepthFormat;
@@ -261,6 +263,53 @@ TEST(FragmentPipeline, LayerOfEachPassLiesElsewhere) {
     EXPECT_NE(one.textures.requests().at(0).address, two.textures.requests().at(0).address);
 }
 
+// ---- full-screen passes
+
+/// Every quad makes the same steps of the same loads and stores.
+class StepShader final : public pipeline::ScreenShader {
+  public:
+    StepShader(std::uint32_t steps, std::uint32_t loads, std::uint32_t stores)
+        : steps_(steps), loads_(loads), stores_(stores) {}
+    std::uint32_t alu(std::uint32_t, std::uint32_t) const override { return 1; }
+    std::uint32_t fetches(std::uint32_t, std::uint32_t) const override { return 0; }
+    std::uint64_t line(std::uint32_t, std::uint32_t, std::uint32_t) const override { return 0; }
+    std::uint32_t steps(std::uint32_t, std::uint32_t) const override { return steps_; }
+    void step(std::uint32_t, std::uint32_t, std::uint32_t number,
+              std::vector<pipeline::MemorySegment>& segments) const override {
+        for (std::uint32_t i = 0; i < loads_; ++i) segments.push_back({(number * 16ULL + i) * 64, 32, false});
+        for (std::uint32_t i = 0; i < stores_; ++i) segments.push_back({(number * 16ULL + 8 + i) * 64, 64, true});
+    }
+
+  private:
+    std::uint32_t steps_, loads_, stores_;
+};
+
+sim::Cycle done_with_steps(std::uint32_t steps, std::uint32_t loads, std::uint32_t stores) {
+    tests::QuadPass pass;
+    pass.quad(0, 0);
+    pipeline::ScreenPass screen;
+    screen.shader = std::make_shared<StepShader>(steps, loads, stores);
+    pass.context.screen = &screen;
+    PipeBench bench(pass, {.texture_latency = 200});
+    bench.run();
+    EXPECT_EQ(bench.pipe.stats().uncached_loads, std::uint64_t{steps} * loads);
+    EXPECT_EQ(bench.pipe.stats().uncached_stores, std::uint64_t{steps} * stores);
+    EXPECT_EQ(bench.pipe.stats().l1.texture_misses, 0U);
+    return bench.done(0);
+}
+
+TEST(FragmentPipeline, PHY_P6_StepsWaitForTheirLoadsAndNotForTheirStores) {
+    const sim::Cycle none = done_with_steps(0, 1, 0), one = done_with_steps(1, 1, 0);
+    EXPECT_GT(one, none + 200);
+    EXPECT_LT(one, none + 210);
+    for (const std::uint32_t steps : {2U, 10U}) EXPECT_EQ(done_with_steps(steps, 1, 0) - none, steps * (one - none));
+    // Loads of one step travel together: one request a cycle leaves.
+    EXPECT_EQ(done_with_steps(1, 3, 0), one + 2);
+    EXPECT_EQ(done_with_steps(5, 3, 0) - none, 5 * (one + 2 - none));
+    EXPECT_EQ(done_with_steps(1, 1, 4), one);
+    EXPECT_LE(done_with_steps(4, 0, 1), none + 4 * 4); // texture unit time only
+}
+
 TEST(FragmentPipeline, SameInAllModes) {
     tests::QuadPass pass;
     textured(pass, 300, [](std::uint32_t i) { return i * i % 37; });
@@ -281,4 +330,4 @@ TEST(FragmentPipeline, SameInAllModes) {
     });
 }
 
-} // namespace
+} // namespace fragment_pipeline_test

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <random>
 
-namespace {
+namespace fragment_reorder_buffer_test {
 
 using Cycles = std::vector<sim::Cycle>;
 using pipeline::Completion;
@@ -143,4 +143,4 @@ TEST(ReorderBuffer, SameInAllModes) {
     });
 }
 
-} // namespace
+} // namespace fragment_reorder_buffer_test

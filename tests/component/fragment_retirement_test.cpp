@@ -7,7 +7,7 @@
 #include <numeric>
 #include <random>
 
-namespace {
+namespace fragment_retirement_test {
 
 using Cycles = std::vector<sim::Cycle>;
 using pipeline::Completion;
@@ -48,8 +48,6 @@ struct Bench {
     }
 };
 
-} // namespace
-
 TEST(OutOfOrderRetirement, QuadsLeaveInTheCycleTheirCompletionArrives) {
     const Bench bench({2, 0, 1}, {.start = 20, .gap = 10});
     EXPECT_EQ(tests::quads_of(bench.sink.values()), (std::vector<pipeline::QuadId>{2, 0, 1}));
@@ -85,3 +83,5 @@ TEST(OutOfOrderRetirement, AnOldQuadThatNeverEndsDoesNotStopTheOthers) {
     EXPECT_EQ(tests::quads_of(bench.sink.values()).back(), 0U);
     EXPECT_EQ(bench.unit.stats().retired, rest.size());
 }
+
+} // namespace fragment_retirement_test

@@ -8,7 +8,7 @@
 
 #include <random>
 
-namespace {
+namespace fragment_scheduler_test {
 
 using Cycles = std::vector<sim::Cycle>;
 using pipeline::FragmentEnd;
@@ -216,6 +216,22 @@ TEST(FragmentScheduler, FalseConflictsAreThoseOfTheAreaOnly) {
     EXPECT_GT(bench.arrival_of(1), 20U);
 }
 
+TEST(FragmentScheduler, ConflictWithAWaitingQuadIsTrueAndCountedAtTheFirstLookup) {
+    KBufferPass pass;
+    pass.quad(0, 0);
+    pass.quad(2, 0);                                                     // waits: another quad of the same 8x8 tile
+    pass.quad(2, 0);                                                     // its pixels are not in flight, but wait
+    pass.quad(4, 0);                                                     // nobody's pixels
+    for (const char* side_buffer : {"side_buffer=8", "side_buffer=0"}) { // the second: all are held at the input
+        SchedulingPlan plan = scoreboard_plan(pass, {"granularity=tile8", side_buffer});
+        SchedulerBench bench(pass, {.pipes = 4, .commit_after = 20}, &plan);
+        bench.run();
+        EXPECT_EQ(bench.scheduler.stats().true_conflicts, 1U) << side_buffer;
+        EXPECT_EQ(bench.scheduler.stats().false_conflicts, 2U) << side_buffer;
+        EXPECT_EQ(bench.scheduler.stats().order_waits, 0U) << side_buffer;
+    }
+}
+
 TEST(FragmentScheduler, FullSideBufferStallsTheRasterizerOnce) {
     KBufferPass pass;
     for (std::uint32_t i = 0; i < 4; ++i) pass.quad(0, 0);
@@ -383,4 +399,4 @@ TEST(FragmentScheduler, SameInAllModes) {
     });
 }
 
-} // namespace
+} // namespace fragment_scheduler_test

@@ -1,12 +1,14 @@
 // Index fetch, primitive counter and vertex fetch between a source, a memory and a sink.
+#include "models/gpu_library.hpp"
 #include "pipeline/geometry/index_fetch.hpp"
 #include "pipeline/geometry/vertex_fetch.hpp"
+#include "pipeline/gpu_params.hpp"
 #include "tests/support/index_fetch_kit.hpp"
 #include "tests/support/sim_kit.hpp"
 
 #include <set>
 
-namespace {
+namespace geometry_fetch_test {
 
 using namespace pipeline;
 using sim::Cycle;
@@ -102,6 +104,17 @@ TEST(IndexFetch, LinesInFlightBoundTheRate) {
     const Cycles cycles = fetch(scene, {.line = 64, .lines_in_flight = 2}).cycles;
     const Cycle lines = 24'000 / 64;
     EXPECT_GE(cycles.back(), lines / 2 * (memory_latency + 2));
+}
+
+// Little's law: 12 bytes a cycle over the way to memory and back, with jitter.
+TEST(IndexFetch, PHY_P13_SustainsATriangleOf32BitIndicesPerCycle) {
+    const tests::GeometryScene scene = tests::make_scene(tests::grid_mesh(100, 100)); // 20,000 triangles
+    pipeline::GpuParams gpu;
+    models::load_gpu("neutral").read("", gpu);
+    pipeline::IndexFetchParams params = gpu.geometry.index_fetch;
+    params.primitives_per_clk = 2; // so that memory is the limit
+    const Cycles cycles = fetch(scene, params, {}, sim::Mode::normal, 1, 321).cycles;
+    EXPECT_GE(12.0 * 20'000 / static_cast<double>(cycles.back() - cycles.front()), 12.0);
 }
 
 TEST(IndexFetch, DrawsWithoutIndicesPassBetweenThoseWith) {
@@ -343,4 +356,4 @@ TEST(VertexFetch, SameInAllModes) {
     });
 }
 
-} // namespace
+} // namespace geometry_fetch_test

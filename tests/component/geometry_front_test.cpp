@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-namespace {
+namespace geometry_front_test {
 
 using namespace pipeline;
 using sim::Cycle;
@@ -329,4 +329,4 @@ TEST(GeometryFront, SameInAllModes) {
     });
 }
 
-} // namespace
+} // namespace geometry_front_test

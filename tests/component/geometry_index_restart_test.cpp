@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace {
+namespace geometry_index_restart_test {
 
 using namespace pipeline;
 using tests::fetch;
@@ -69,4 +69,4 @@ TEST(IndexFetch, RestartsWithinBudgetDelayNothingElse) {
     EXPECT_NEAR(static_cast<double>(run.cycles.back() - run.cycles.front()), 1100.0 - 3, 8); // 2 bytes a cycle
 }
 
-} // namespace
+} // namespace geometry_index_restart_test

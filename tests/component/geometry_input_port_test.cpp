@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace {
+namespace geometry_input_port_test {
 
 using pipeline::DrawTerms;
 using pipeline::GpuParams;
@@ -40,8 +40,6 @@ GpuParams wide_gpu() {
 double cycles(const GpuParams& gpu, const pipeline::Frame& frame) {
     return static_cast<double>(pipeline::run_vertex_path(gpu, frame).cycles);
 }
-
-} // namespace
 
 TEST(InputPort, AttributesApartCostTheirSlotAndTheirStream) {
     pipeline::InputPortParams port;
@@ -256,3 +254,5 @@ TEST(VertexPath, EstimateOfASampleIsThatOfTheWhole) {
     EXPECT_NEAR(static_cast<double>(part.cycles) / static_cast<double>(whole.cycles), 1.0, 0.01);
     EXPECT_EQ(whole.counts.vertex_shader_runs.value, 280'000U);
 }
+
+} // namespace geometry_input_port_test

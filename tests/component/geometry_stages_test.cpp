@@ -6,11 +6,12 @@
 #include "pipeline/geometry/vertex_reuse.hpp"
 #include "pipeline/geometry/vertex_shader.hpp"
 #include "tests/support/geometry_scene.hpp"
+#include "tests/support/index_fetch_kit.hpp"
 #include "tests/support/sim_kit.hpp"
 
 #include <numeric>
 
-namespace {
+namespace geometry_stages_test {
 
 using namespace pipeline;
 using sim::Cycle;
@@ -18,10 +19,6 @@ using Cycles = std::vector<Cycle>;
 using tests::Rig;
 using tests::Sink;
 using tests::Source;
-
-GeometryPass pass_of(const tests::GeometryScene& scene) {
-    return {1, &scene.stream, scene.frame.resources.get(), scene.frame.draws, scene.stream.draws};
-}
 
 tests::SceneDraw one_triangle(std::uint32_t instances = 1) {
     return {.vertex_count = 3, .indices = {0, 1, 2}, .instances = instances};
@@ -343,4 +340,4 @@ TEST(TriangleSetup, OneTrianglePerSetupTime) {
 
 TEST(TriangleSetup, BlockedOutputLosesNothing) { EXPECT_EQ(set_up(30, 2, {.every = 9}).size(), 30U); }
 
-} // namespace
+} // namespace geometry_stages_test

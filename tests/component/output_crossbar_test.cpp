@@ -3,7 +3,7 @@
 #include "tests/support/quad_kit.hpp"
 #include "tests/support/sim_kit.hpp"
 
-namespace {
+namespace output_crossbar_test {
 
 using Cycles = std::vector<sim::Cycle>;
 using pipeline::FragmentEnd;
@@ -27,7 +27,7 @@ struct Bench {
             sinks.emplace_back(rig.context("rop" + std::to_string(rop)),
                                rop < sink_options.size() ? sink_options[rop] : tests::SinkOptions{});
             sim::connect(unit.partitions_out[rop], sinks[rop].in,
-                         {params.latency, 1, params.queue + static_cast<std::uint32_t>(params.latency)});
+                         {params.latency, 1, static_cast<std::uint32_t>(params.latency) + 1});
         }
         rig.simulation.run();
     }
@@ -100,14 +100,18 @@ TEST(Crossbar, OnlyLivingPixelsCostBytes) {
     EXPECT_EQ(bench.unit.stats().bytes, 7U * 64);
 }
 
-TEST(Crossbar, FullPartitionHoldsTheOthersBack) {
+// Group 0 takes nothing before cycle 100: two of its quads are on the wire, the others wait in its queue.
+TEST(Crossbar, QuadsPassAGroupThatIsHeldUntilItsQueueIsFull) {
     tests::QuadPass pass(64, 64, 2);
-    for (std::uint32_t i = 0; i < 10; ++i) pass.quad(0, 0); // partition 0
-    pass.quad(4, 0);                                        // partition 1
-    const Bench bench(pass, pass.quad_tasks(), {.bytes_per_clk = 64, .latency = 1, .queue = 4}, {{.start = 100}, {}});
-    EXPECT_EQ(bench.sinks[0].size(), 10U);
-    EXPECT_GT(bench.sinks[1].cycles().at(0), 100U);
-    EXPECT_GT(bench.unit.activity_times()[static_cast<std::size_t>(sim::Activity::blocked)], 80'000U);
+    for (std::uint32_t i = 0; i < 10; ++i) pass.quad(0, 0); // group 0
+    pass.quad(4, 0);                                        // group 1
+    for (const auto& [queue, passes] : {std::pair{4U, false}, {7U, false}, {8U, true}, {16U, true}}) {
+        const Bench bench(pass, pass.quad_tasks(), {.bytes_per_clk = 64, .latency = 1, .queue = queue},
+                          {{.start = 100}, {}});
+        EXPECT_EQ(tests::quads_of(bench.sinks[0].values()), tests::counting(10));
+        EXPECT_EQ(bench.sinks[1].cycles().at(0) < 20, passes) << queue;
+        EXPECT_GT(bench.unit.activity_times()[static_cast<std::size_t>(sim::Activity::blocked)], 80'000U);
+    }
 }
 
 TEST(Crossbar, BroadcastsACommandToAllPartitionsAtOnceInOrder) {
@@ -140,4 +144,4 @@ TEST(Crossbar, SameInAllModes) {
     });
 }
 
-} // namespace
+} // namespace output_crossbar_test

@@ -1,11 +1,12 @@
-// A ROP partition alone: depth test and colour write, tile caches, input queue. Links take one cycle, memory 100: a
+// A ROP group alone: depth test and colour write, caches, input queue. A line of 4-byte pixels holds two sectors of 2x2
+// pixels. Links take one cycle, memory 100: a
 // quad sent at cycle 0 is admitted at 1 and executed at 2; a tile asked for at 1 is there at 103.
 #include "tests/support/rop_kit.hpp"
 
-namespace {
+namespace output_rop_fixed_function_test {
 
 using Cycles = std::vector<sim::Cycle>;
-using Tiles = std::vector<std::uint64_t>;
+using Lines = std::vector<std::uint64_t>;
 using pipeline::MemoryClient;
 using tests::RopBench;
 using tests::RopOptions;
@@ -25,7 +26,7 @@ struct ColourPass : tests::QuadPass {
     }
 };
 
-TEST(RopFixedFunction, DepthTestWaitsForAMissingTileAndNotForAResidentOne) {
+TEST(RopFixedFunction, DepthTestWaitsForAMissingSectorAndNotForAResidentOne) {
     DepthPass pass;
     for (std::uint32_t draw = 0; draw < 2; ++draw) {
         pass.triangle(draw);
@@ -40,7 +41,7 @@ TEST(RopFixedFunction, DepthTestWaitsForAMissingTileAndNotForAResidentOne) {
     EXPECT_EQ(bench.rop.stats().depth_tiles.hits, 1U);
 }
 
-TEST(RopFixedFunction, QuadThatFindsItsTileOnItsWayAsksForNothing) {
+TEST(RopFixedFunction, QuadThatFindsItsLineOnItsWayAsksForNothing) {
     DepthPass pass;
     pass.quad(0, 0);
     pass.quad(2, 0);
@@ -62,7 +63,7 @@ TEST(RopFixedFunction, DepthTestKeepsTheNearestAndTheFirstOfEqualOnes) {
     EXPECT_EQ(bench.rop.stats().depth_failed, 2U);
 }
 
-TEST(RopFixedFunction, OnlyWhatPassesMakesItsTileDirty) {
+TEST(RopFixedFunction, OnlyWhatPassesMakesItsLineDirty) {
     for (const bool passes : {false, true}) {
         DepthPass pass;
         pass.quad(0, 0, 15, 0.5F);
@@ -93,71 +94,71 @@ TEST(RopFixedFunction, OpaqueColourIsNotFetchedAndBlendedColourIs) {
     }
 }
 
-// Four fragments: 16 bytes of depth read, 16 written, 16 of colour written, 16 read where they are blended.
-TEST(RopFixedFunction, PortOfTheTileCacheSetsTheRate) {
-    const auto cycles_per_quad = [](bool colour, pipeline::BlendMode blend, float depth, std::uint32_t units) {
+// Four ROPs, four fragments: 16 bytes of depth read, 16 written, 16 of colour written, 16 read where they are blended.
+TEST(RopFixedFunction, PortOfTheCacheSetsTheRate) {
+    const auto cycles_per_quad = [](bool colour, pipeline::BlendMode blend, float depth, std::uint32_t port) {
         DepthPass pass;
         pipeline::Frame frame;
         pass.context.frame = &frame;
         pass.context.colour_write = colour;
         pass.context.blend = blend;
         for (const std::uint32_t block : {0U, 1U, 2U, 3U}) pass.quad(block % 2 * 2, block / 2 * 2, 15, depth);
-        RopBench bench(pass, {.rop = {.units = units, .bytes_per_clk = 16}});
+        RopBench bench(pass, {.rop = {.bytes_per_clk = port}});
         bench.run();
         return (bench.executed().second - bench.executed().first) / 3;
     };
     using pipeline::BlendMode;
-    EXPECT_EQ(cycles_per_quad(false, BlendMode::replace, 0.5F, 1), 2U);
-    EXPECT_EQ(cycles_per_quad(true, BlendMode::replace, 0.5F, 1), 3U);
-    EXPECT_EQ(cycles_per_quad(true, BlendMode::add, 0.5F, 1), 4U);
-    EXPECT_EQ(cycles_per_quad(true, BlendMode::add, 1.0F, 1), 1U); // fails against the cleared surface: read only
-    EXPECT_EQ(cycles_per_quad(true, BlendMode::add, 0.5F, 2), 2U);
-    EXPECT_EQ(cycles_per_quad(true, BlendMode::add, 0.5F, 4), 1U);
+    EXPECT_EQ(cycles_per_quad(false, BlendMode::replace, 0.5F, 4), 2U);
+    EXPECT_EQ(cycles_per_quad(true, BlendMode::replace, 0.5F, 4), 3U);
+    EXPECT_EQ(cycles_per_quad(true, BlendMode::add, 0.5F, 4), 4U);
+    EXPECT_EQ(cycles_per_quad(true, BlendMode::add, 1.0F, 4), 1U); // fails against the cleared surface: read only
+    EXPECT_EQ(cycles_per_quad(true, BlendMode::add, 0.5F, 8), 2U);
+    EXPECT_EQ(cycles_per_quad(true, BlendMode::add, 0.5F, 16), 1U);
 }
 
-TEST(RopFixedFunction, LeastRecentlyUsedTileIsReplacedAndWrittenBackAtOnce) {
+TEST(RopFixedFunction, LeastRecentlyUsedLineIsReplacedAndWrittenBackAtOnce) {
     ColourPass pass;
     for (const std::uint32_t tile : {0U, 1U, 0U, 2U, 0U}) pass.quad(tile * 4, 0);
-    RopBench bench(pass, {.rop = {.cache_tiles = 2}, .source = {.gap = 10}});
+    RopBench bench(pass, {.rop = {.colour_cache_bytes = 64}, .source = {.gap = 10}});
     bench.run();
-    EXPECT_EQ(bench.requested_tiles(MemoryClient::tile_write), (Tiles{1}));
+    EXPECT_EQ(bench.requested_lines(MemoryClient::tile_write), (Lines{2}));
     EXPECT_EQ(bench.request_cycles(MemoryClient::tile_write), (Cycles{3 * 10 + 2})); // admitted at 31
     EXPECT_EQ(bench.rop.stats().colour_tiles.misses, 3U);
     EXPECT_EQ(bench.rop.stats().colour_tiles.hits, 2U);
     bench.write_back();
-    EXPECT_EQ(bench.requested_tiles(MemoryClient::tile_write), (Tiles{1, 0, 2}));
+    EXPECT_EQ(bench.requested_lines(MemoryClient::tile_write), (Lines{2, 0, 4}));
     EXPECT_EQ(bench.rop.stats().colour_tiles.writebacks, 3U);
 }
 
-TEST(RopFixedFunction, ReplacedTileIsWrittenBeforeTheNewOneIsRead) {
+TEST(RopFixedFunction, ReplacedLineIsWrittenBeforeTheNewOneIsRead) {
     DepthPass pass;
     for (const std::uint32_t tile : {0U, 1U}) pass.quad(tile * 4, 0);
-    RopBench bench(pass, {.rop = {.cache_tiles = 1}, .source = {.gap = 200}});
+    RopBench bench(pass, {.rop = {.depth_cache_bytes = 32}, .source = {.gap = 200}});
     bench.run();
     ASSERT_EQ(bench.memory.arrivals.size(), 3U);
     EXPECT_TRUE(bench.memory.arrivals[1].request.write);
     EXPECT_FALSE(bench.memory.arrivals[2].request.write);
-    EXPECT_EQ(bench.requested_tiles(MemoryClient::tile_write), (Tiles{0}));
-    EXPECT_EQ(bench.requested_tiles(MemoryClient::tile_read), (Tiles{0, 1}));
+    EXPECT_EQ(bench.requested_lines(MemoryClient::tile_write), (Lines{0}));
+    EXPECT_EQ(bench.requested_lines(MemoryClient::tile_read), (Lines{0, 2}));
 }
 
-TEST(RopFixedFunction, WriteBackSendsOneDirtyTilePerCycle) {
+TEST(RopFixedFunction, WriteBackSendsOneDirtyLinePerCycle) {
     ColourPass pass;
     for (const std::uint32_t tile : {3U, 1U, 4U, 2U}) pass.quad(tile * 4, 0);
     RopBench bench(pass);
     bench.run();
     bench.write_back();
     const Cycles cycles = bench.request_cycles(MemoryClient::tile_write);
-    EXPECT_EQ(bench.requested_tiles(MemoryClient::tile_write), (Tiles{3, 1, 4, 2}));
+    EXPECT_EQ(bench.requested_lines(MemoryClient::tile_write), (Lines{6, 2, 8, 4}));
     EXPECT_EQ(cycles.back() - cycles.front(), 3U);
     bench.write_back();
     EXPECT_EQ(bench.request_cycles(MemoryClient::tile_write).size(), 4U); // clean by now
 }
 
-TEST(RopFixedFunction, TileThatAQuadWaitsForIsNotReplaced) {
+TEST(RopFixedFunction, LineThatAQuadWaitsForIsNotReplaced) {
     DepthPass pass;
     for (const std::uint32_t tile : {0U, 1U}) pass.quad(tile * 4, 0);
-    RopBench bench(pass, {.rop = {.cache_tiles = 1}});
+    RopBench bench(pass, {.rop = {.depth_cache_bytes = 32}});
     bench.run();
     // Replaced when the first quad has been executed; its write goes first through a link of one request per cycle.
     EXPECT_EQ(bench.request_cycles(MemoryClient::tile_write), (Cycles{miss + 1}));
@@ -176,6 +177,73 @@ TEST(RopFixedFunction, FullQueueHoldsTheCrossbarBack) {
     EXPECT_EQ(bench.rop.stats().quads, 8U);
 }
 
+// Lines of two sectors: memory knows the right one. The bursts of 32 bytes are written as a whole, under a byte mask.
+TEST(RopFixedFunction, PHY_P11_ClearedSectorIsNotFetchedAndItsFirstWriteBackWritesItWhole) {
+    DepthPass pass;
+    pass.context.depth_bytes = 8; // a sector is a line and a burst
+    pass.quad(0, 0, 0b0001);
+    pass.quad(4, 0, 0b0001);
+    RopBench bench(pass);
+    bench.fixed.depth_clear.set(pass.context.layout);
+    bench.fixed.depth_clear.written(4);
+    const std::uint64_t before = bench.fixed.depth_clear.left();
+    bench.run();
+    EXPECT_EQ(bench.requested_lines(MemoryClient::tile_read), (Lines{4})); // the one that is in memory
+    EXPECT_EQ(bench.executed().first, hit);
+    bench.write_back();
+    EXPECT_EQ(bench.requested_lines(MemoryClient::tile_write), (Lines{0, 4}));
+    EXPECT_FALSE(bench.fixed.depth_clear.cleared(0));
+    EXPECT_EQ(bench.fixed.depth_clear.left(), before - 1);
+}
+
+TEST(RopFixedFunction, PHY_P11_ClearedSectorThatIsOnlyTestedStaysCleared) {
+    DepthPass pass;
+    pass.quad(0, 0, 15, 1.0F); // fails against the cleared depth
+    RopBench bench(pass);
+    bench.fixed.depth_clear.set(pass.context.layout);
+    bench.run();
+    bench.write_back();
+    EXPECT_TRUE(bench.memory.arrivals.empty());
+    EXPECT_TRUE(bench.fixed.depth_clear.cleared(0));
+}
+
+// Half of the line's two sectors was written before, so its burst comes from memory.
+TEST(RopFixedFunction, PHY_P11_LineOfWhichOneSectorIsClearedIsFetched) {
+    DepthPass pass;
+    pass.quad(2, 0);
+    RopBench bench(pass);
+    bench.fixed.depth_clear.set(pass.context.layout);
+    bench.fixed.depth_clear.written(0);
+    bench.run();
+    EXPECT_EQ(bench.executed().first, miss);
+    EXPECT_EQ(bench.memory.arrivals[0].request.bytes, 32U);
+}
+
+TEST(RopFixedFunction, CacheThatCannotHoldAQuadIsRefused) {
+    DepthPass pass;
+    pass.context.depth_bytes = 32; // a sector of 128 bytes
+    try {
+        const RopBench bench(pass, {.rop = {.depth_cache_bytes = 127}});
+        ADD_FAILURE() << "accepted";
+    } catch (const sim::InputError& error) {
+        EXPECT_STREQ(error.what(),
+                     "rop.depth_cache_bytes: expected at least 128 bytes, 128 for the quad that each of 1 "
+                     "groups of four ROPs works on, got 127");
+    }
+}
+
+TEST(RopFixedFunction, PHY_S3_RopsComeInGroupsOfFour) {
+    EXPECT_EQ(pipeline::RopParams{.units = 12}.groups(), 3U);
+    for (const auto& [units, nearest] : {std::pair{5U, "4"}, {6U, "8"}, {15U, "16"}}) {
+        try {
+            const std::uint32_t groups = pipeline::RopParams{.units = units}.groups();
+            ADD_FAILURE() << groups;
+        } catch (const sim::InputError& error) {
+            EXPECT_TRUE(std::string(error.what()).ends_with(std::string("the nearest is ") + nearest)) << error.what();
+        }
+    }
+}
+
 TEST(RopFixedFunction, ClearAndCopyMoveTheirBytes) {
     const DepthPass pass;
     RopBench bench(pass);
@@ -190,6 +258,10 @@ TEST(RopFixedFunction, ClearAndCopyMoveTheirBytes) {
     EXPECT_EQ(written, 1512U);
     EXPECT_EQ(bench.rop.stats().clears, 1000U);
     EXPECT_EQ(bench.rop.stats().copies, 1024U);
+    bench.rop.stream(0, 300, true);
+    bench.run();
+    EXPECT_EQ(bench.rop.stats().clears, 1000U);
+    EXPECT_EQ(bench.rop.stats().resolves, 300U);
 }
 
 TEST(RopFixedFunction, ActivitiesSumToTheElapsedTimeAndModesAgree) {
@@ -197,7 +269,9 @@ TEST(RopFixedFunction, ActivitiesSumToTheElapsedTimeAndModesAgree) {
     for (std::uint32_t i = 0; i < 300; ++i)
         pass.quad(i * 6 % 32, i * 10 % 32, static_cast<std::uint8_t>(i % 15 + 1), 1.0F / static_cast<float>(i + 2));
     tests::expect_same_in_all_modes([&](std::uint64_t, sim::Mode mode, std::uint64_t shuffle) {
-        RopBench bench(pass, {.rop = {.units = 1, .cache_tiles = 4, .queue = 4}, .mode = mode, .shuffle = shuffle});
+        RopBench bench(
+            pass,
+            {.rop = {.bytes_per_clk = 4, .depth_cache_bytes = 128, .queue = 4}, .mode = mode, .shuffle = shuffle});
         bench.run();
         bench.write_back();
         sim::Time sum = 0;
@@ -209,4 +283,4 @@ TEST(RopFixedFunction, ActivitiesSumToTheElapsedTimeAndModesAgree) {
     });
 }
 
-} // namespace
+} // namespace output_rop_fixed_function_test

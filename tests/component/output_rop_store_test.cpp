@@ -1,12 +1,12 @@
-// A ROP partition alone: k-buffer values computed by a shader are stored, written back and read by a texture unit.
+// A ROP group alone: k-buffer values computed by a shader are stored, written back and read by a texture unit.
 // Links take one cycle, memory 100: a quad sent at cycle 0 is executed at 2, its commit arrives at 3; a read sent at s
-// is accepted at s + 1, and sampled at s + 103 where it comes from memory.
+// is accepted at s + 1, and reads memory's array at s + 103. A write sent at s is in that array at s + 102.
 #include "tests/support/rop_kit.hpp"
 
-namespace {
+namespace output_rop_store_test {
 
 using Cycles = std::vector<sim::Cycle>;
-using Tiles = std::vector<std::uint64_t>;
+using Lines = std::vector<std::uint64_t>;
 using pipeline::MemoryClient;
 using pipeline::QuadKind;
 using pipeline::QuadTask;
@@ -38,7 +38,7 @@ QuadTask write_back() {
     return task;
 }
 
-TEST(RopStore, CommitsInTheCycleAfterAdmissionWithoutFetchingTheTile) {
+TEST(RopStore, CommitsInTheCycleAfterAdmissionWithoutFetchingTheSector) {
     StorePass pass;
     pass.quad(0, 0);
     RopBench bench(pass, {.shader = site(Visibility::rop_cache)});
@@ -50,12 +50,12 @@ TEST(RopStore, CommitsInTheCycleAfterAdmissionWithoutFetchingTheTile) {
     EXPECT_EQ(bench.rop.stats().stores, 4U);
 }
 
-// Four pixels of 64 bytes through ports of 16 bytes per ROP.
-TEST(RopStore, PortOfTheTileCacheSetsTheRate) {
+// Four pixels of 64 bytes through the ports of four ROPs.
+TEST(RopStore, PortOfTheCacheSetsTheRate) {
     StorePass pass("rgbz");
     pass.quads(3);
-    for (const auto& [units, cycles] : {std::pair{1U, 16U}, {4U, 4U}, {16U, 1U}}) {
-        RopBench bench(pass, {.rop = {.units = units, .bytes_per_clk = 16}, .shader = site(Visibility::rop_cache)});
+    for (const auto& [port, cycles] : {std::pair{4U, 16U}, {16U, 4U}, {64U, 1U}}) {
+        RopBench bench(pass, {.rop = {.bytes_per_clk = port}, .shader = site(Visibility::rop_cache)});
         bench.run();
         EXPECT_EQ(bench.commits->cycles(), (Cycles{3, 3 + cycles, 3 + 2 * cycles}));
     }
@@ -82,19 +82,20 @@ TEST(RopStore, HeldCommitHoldsTheStoreAndNothingIsLost) {
     EXPECT_EQ(bench.stored(0), 12.0F);
 }
 
-// The second store is applied at 402. A read is accepted at s + 1 and sampled 280 cycles later.
-TEST(RopStore, ReadFromTheTileCacheSeesAStoreFromTheNextCycleOn) {
+// The second store is applied at 402. A read is accepted at s + 1 and reads the array 140 cycles later; the way back
+// does not change what it carries.
+TEST(RopStore, ReadFromTheCacheSeesAStoreFromTheNextCycleOn) {
     StorePass pass;
     for (int i = 0; i < 2; ++i) pass.quad(0, 0);
-    for (const auto& [start, value] : {std::pair{121U, 1.0F}, {122U, 2.0F}}) {
-        RopBench bench(pass, {.rop = {.read_latency = 280},
+    for (const auto& [start, value] : {std::pair{261U, 1.0F}, {262U, 2.0F}}) {
+        RopBench bench(pass, {.rop = {.read_request_latency = 140, .read_return_latency = 140},
                               .shader = site(Visibility::rop_cache),
                               .reads = {0},
                               .reads_source = {.start = start},
                               .source = {.gap = 400}});
         bench.run();
         EXPECT_EQ(bench.commits->cycles()[1], 403U);
-        EXPECT_EQ(bench.read_at(0), start + 1 + 280);
+        EXPECT_EQ(bench.read_at(0), start + 1 + 140);
         EXPECT_EQ(bench.read_value(0), value);
         EXPECT_EQ(bench.reads_done->cycles(), (Cycles{start + 1 + 280 + 1}));
         EXPECT_EQ(bench.rop.stats().kbuffer_reads_from_tiles, 1U);
@@ -102,7 +103,7 @@ TEST(RopStore, ReadFromTheTileCacheSeesAStoreFromTheNextCycleOn) {
     }
 }
 
-TEST(RopStore, ReadOfATileThatIsNotInTheCacheComesFromMemory) {
+TEST(RopStore, ReadOfASectorThatIsNotInTheCacheComesFromMemory) {
     StorePass pass;
     pass.quad(0, 0);
     RopBench bench(pass, {.shader = site(Visibility::rop_cache), .reads = {4}, .reads_source = {.start = 50}});
@@ -113,14 +114,14 @@ TEST(RopStore, ReadOfATileThatIsNotInTheCacheComesFromMemory) {
     EXPECT_EQ(bench.rop.stats().kbuffer_reads_from_tiles, 0U);
 }
 
-TEST(RopStore, ReadGoesPastTheTileCacheWhereStoresBecomeVisibleInMemory) {
+TEST(RopStore, ReadGoesPastTheCacheWhereStoresBecomeVisibleInMemory) {
     StorePass pass;
     pass.quad(0, 0);
     for (const Visibility visibility : {Visibility::writeback, Visibility::never_until_flush}) {
         RopBench bench(pass, {.shader = site(visibility), .reads = {0}, .reads_source = {.start = 50}});
         bench.run();
         EXPECT_EQ(bench.read_at(0), 50 + from_memory);
-        EXPECT_EQ(bench.read_value(0), cleared); // stored at 2, still in the tile cache only
+        EXPECT_EQ(bench.read_value(0), cleared); // stored at 2, still in the cache only
         EXPECT_EQ(bench.stored(0), 1.0F);
     }
 }
@@ -140,8 +141,8 @@ TEST(RopStore, TargetsAreReadOneByOneOrAllAtOneInstant) {
 
 TEST(RopStore, ReadsAreAcceptedAtTheirRateAndAnsweredInOrder) {
     StorePass pass;
-    pass.quad(0, 0);
-    RopBench bench(pass, {.rop = {.read_latency = 50},
+    for (const std::uint32_t block : {0U, 1U, 2U, 3U}) pass.quad(block % 2 * 2, block / 2 * 2);
+    RopBench bench(pass, {.rop = {.read_request_latency = 25, .read_return_latency = 25},
                           .shader = site(Visibility::rop_cache),
                           .reads = {0, 1, 2, 3},
                           .reads_source = {.start = 10}});
@@ -152,12 +153,13 @@ TEST(RopStore, ReadsAreAcceptedAtTheirRateAndAnsweredInOrder) {
     EXPECT_EQ(threads, tests::counting(4));
 }
 
-// A cache of one tile: the second quad is admitted at 401 and drives the first one's tile out.
-TEST(RopStore, WrittenBackStoreIsVisibleFromTheNextCycleOn) {
+// A cache of one sector: the second quad is admitted at 401 and drives the first one's sector out; memory has it at
+// 503.
+TEST(RopStore, WrittenBackStoreIsVisibleOnceTheArrayOfMemoryHasIt) {
     StorePass pass;
     for (const std::uint32_t x : {0U, 4U}) pass.quad(x, 0);
-    for (const auto& [sampled, value] : {std::pair{401U, cleared}, {402U, 1.0F}}) {
-        RopBench bench(pass, {.rop = {.cache_tiles = 1},
+    for (const auto& [sampled, value] : {std::pair{502U, cleared}, {504U, 1.0F}}) {
+        RopBench bench(pass, {.rop = {.kbuffer_cache_bytes = 64},
                               .shader = site(Visibility::writeback),
                               .reads = {0},
                               .reads_source = {.start = sampled - from_memory},
@@ -166,53 +168,54 @@ TEST(RopStore, WrittenBackStoreIsVisibleFromTheNextCycleOn) {
         EXPECT_EQ(bench.request_cycles(MemoryClient::tile_write), (Cycles{402}));
         EXPECT_EQ(bench.read_at(0), sampled);
         EXPECT_EQ(bench.read_value(0), value);
-        EXPECT_EQ(bench.history.store(0, 0).visible, 402U);
+        EXPECT_EQ(bench.history.store(0, 0).visible, 504U);
     }
 }
 
-// The tile is driven out at 401. The command is executed at 802; the tile of the second quad is written at 803, and at
-// 804 what had been driven out is declared observable.
+// The sector is driven out at 401. The command is executed at 802; the sector of the second quad is written at 803, and
+// when memory has it, at 905, all is declared observable.
 TEST(RopStore, NothingIsVisibleUntilAFlushWhereTheHardwareSaysSo) {
     StorePass pass;
     for (const std::uint32_t x : {0U, 4U}) pass.quad(x, 0);
     std::vector<QuadTask> tasks = pass.quad_tasks();
     tasks.push_back(write_back());
-    for (const auto& [sampled, value] : {std::pair{600U, cleared}, {804U, cleared}, {805U, 1.0F}}) {
+    for (const auto& [sampled, value] : {std::pair{600U, cleared}, {904U, cleared}, {906U, 1.0F}}) {
         RopBench bench(pass,
-                       {.rop = {.cache_tiles = 1},
+                       {.rop = {.kbuffer_cache_bytes = 64},
                         .shader = site(Visibility::never_until_flush),
                         .reads = {0},
                         .reads_source = {.start = sampled - from_memory},
                         .source = {.gap = 400}},
                        tasks);
         bench.run();
-        EXPECT_EQ(bench.requested_tiles(MemoryClient::tile_write), (Tiles{0, 1}));
+        EXPECT_EQ(bench.requested_lines(MemoryClient::tile_write), (Lines{0, 4}));
         EXPECT_EQ(bench.read_at(0), sampled);
         EXPECT_EQ(bench.read_value(0), value);
-        EXPECT_EQ(bench.commits->cycles().back(), 806U);
+        EXPECT_EQ(bench.commits->cycles().back(), 906U);
     }
 }
 
-TEST(RopStore, WriteThroughWritesTheBlockAndIsVisibleInTheNextCycle) {
+TEST(RopStore, WriteThroughIsCommittedAndVisibleWhenMemoryHasTheBlock) {
     StorePass pass;
     for (int i = 0; i < 2; ++i) pass.quad(2, 0);
     ShaderSite shader = site(Visibility::writeback);
     shader.write_through = true;
-    for (const auto& [sampled, value] : {std::pair{202U, 1.0F}, {203U, 2.0F}}) {
+    for (const auto& [sampled, value] : {std::pair{303U, 1.0F}, {305U, 2.0F}}) {
         RopBench bench(
             pass,
             {.shader = shader, .reads = {1}, .reads_source = {.start = sampled - from_memory}, .source = {.gap = 200}});
         bench.run();
         EXPECT_EQ(bench.read_value(0), value);
         EXPECT_EQ(bench.request_cycles(MemoryClient::tile_write), (Cycles{3, 203}));
+        EXPECT_EQ(bench.commits->cycles(), (Cycles{105, 305}));
         EXPECT_EQ(bench.memory.arrivals[0].request.bytes, 64U);
         bench.write_back();
         EXPECT_EQ(bench.request_cycles(MemoryClient::tile_write).size(), 2U); // nothing is left to write
     }
 }
 
-// Executed at 5; one dirty tile per cycle at 6, 7 and 8; the acknowledgement at 9. The quad behind it waits.
-TEST(RopStore, InBandWriteBackIsAcknowledgedWhenAllDirtyTilesAreOnTheirWay) {
+// Executed at 5; one dirty sector per cycle at 6, 7 and 8, in memory at 108, 109 and 110. The quad behind it waits.
+TEST(RopStore, InBandWriteBackIsAcknowledgedWhenMemoryHasAllDirtySectors) {
     StorePass pass;
     for (std::uint32_t i = 0; i < 4; ++i) pass.quad(i % 3 * 4, 0);
     std::vector<QuadTask> tasks = pass.quad_tasks();
@@ -223,7 +226,7 @@ TEST(RopStore, InBandWriteBackIsAcknowledgedWhenAllDirtyTilesAreOnTheirWay) {
     for (const pipeline::Commit& commit : bench.commits->values()) kinds.push_back(commit.kind);
     EXPECT_EQ(kinds,
               (std::vector{QuadKind::quad, QuadKind::quad, QuadKind::quad, QuadKind::writeback, QuadKind::quad}));
-    EXPECT_EQ(bench.commits->cycles(), (Cycles{3, 4, 5, 10, 10}));
+    EXPECT_EQ(bench.commits->cycles(), (Cycles{3, 4, 5, 111, 111}));
     EXPECT_EQ(bench.request_cycles(MemoryClient::tile_write), (Cycles{7, 8, 9}));
     EXPECT_EQ(bench.rop.stats().quads, 4U); // the command is none
 }
@@ -233,7 +236,7 @@ TEST(RopStore, CoherentTextureCachesAreToldWhenAStoreBecomesVisible) {
     pass.quad(2, 0);
     pass.quad(4, 0);
     const auto blocks = [&](Visibility visibility) {
-        RopBench bench(pass, {.rop = {.cache_tiles = 1},
+        RopBench bench(pass, {.rop = {.kbuffer_cache_bytes = 64},
                               .shader = site(visibility, TextureCoherence::invalidate_on_write),
                               .source = {.gap = 400}});
         bench.run();
@@ -244,7 +247,58 @@ TEST(RopStore, CoherentTextureCachesAreToldWhenAStoreBecomesVisible) {
     };
     using Told = std::vector<std::pair<std::uint32_t, sim::Cycle>>;
     EXPECT_EQ(blocks(Visibility::rop_cache), (Told{{1, 3}, {4, 403}}));
-    EXPECT_EQ(blocks(Visibility::writeback), (Told{{0, 402}, {1, 402}, {2, 402}, {3, 402}})); // the whole tile
+    EXPECT_EQ(blocks(Visibility::writeback), (Told{{1, 504}}));
+}
+
+// A pixel of four rgbz entries lies in four render targets of 64 bytes a sector; bursts have 32 bytes.
+TEST(RopStore, PHY_P11_WriteBackMovesTheBurstsOfTheStoredPixelsOnly) {
+    struct Expected {
+        std::string_view entry;
+        std::uint8_t mask;
+        std::vector<std::uint32_t> bytes;
+    };
+    for (const Expected& expected : {Expected{"z", 0b0001, {32}}, Expected{"z", 0b1100, {32}},
+                                     Expected{"z", 0b0101, {64}}, Expected{"rgbz", 0b0010, {32, 32, 32, 32}},
+                                     Expected{"rgbz", 0b1111, {256}}, Expected{"rgbz", 0b0110, {256}}}) {
+        StorePass pass(expected.entry);
+        pass.quad(2, 0, expected.mask);
+        RopBench bench(pass, {.shader = site(Visibility::writeback)});
+        bench.run();
+        bench.write_back();
+        std::vector<std::uint32_t> bytes;
+        for (const auto& [request, cycle] : bench.memory.arrivals) {
+            EXPECT_TRUE(request.write);
+            bytes.push_back(request.bytes);
+        }
+        EXPECT_EQ(bytes, expected.bytes) << expected.entry << " " << int{expected.mask};
+    }
+}
+
+// The read at 50 finds one of four pixels stored; what it brings from memory completes the sector for the second one.
+TEST(RopStore, ReadOfAPartlyStoredSectorTakesTheRestFromMemoryOnce) {
+    StorePass pass;
+    pass.quad(0, 0, 0b0001);
+    RopBench bench(pass,
+                   {.shader = site(Visibility::rop_cache), .reads = {0, 0}, .reads_source = {.start = 50, .gap = 500}});
+    bench.run();
+    EXPECT_EQ(bench.read_at(0), 50 + from_memory);
+    EXPECT_EQ(bench.read_value(0), 1.0F); // merged with what was stored here
+    EXPECT_EQ(bench.request_cycles(MemoryClient::kbuffer_read).size(), 1U);
+    EXPECT_EQ(bench.rop.stats().kbuffer_reads_from_tiles, 1U);
+}
+
+TEST(RopStore, TileMemoryHoldsTheWholeSurfaceAndStoresWholeSectors) {
+    StorePass pass;
+    for (std::uint32_t i = 0; i < 64; ++i) pass.quad(i % 8 * 8, i / 8 * 8, 0b1000);
+    ShaderSite shader = site(Visibility::rop_cache);
+    shader.tile_memory = true;
+    RopBench bench(pass, {.rop = {.kbuffer_cache_bytes = 64}, .shader = shader});
+    bench.kbuffer_clear.set(pass.context.layout);
+    bench.run();
+    EXPECT_TRUE(bench.memory.arrivals.empty());
+    bench.write_back();
+    EXPECT_EQ(bench.memory.arrivals.size(), 64U);
+    for (const auto& [request, cycle] : bench.memory.arrivals) EXPECT_EQ(request.bytes, 64U);
 }
 
 TEST(RopStore, ModesAgreeUnderAllVisibilities) {
@@ -257,7 +311,7 @@ TEST(RopStore, ModesAgreeUnderAllVisibilities) {
     for (const Visibility visibility : {Visibility::rop_cache, Visibility::writeback, Visibility::never_until_flush})
         tests::expect_same_in_all_modes([&](std::uint64_t, sim::Mode mode, std::uint64_t shuffle) {
             RopBench bench(pass,
-                           {.rop = {.units = 4, .cache_tiles = 4, .queue = 8},
+                           {.rop = {.kbuffer_cache_bytes = 1024, .queue = 8},
                             .shader = site(visibility, TextureCoherence::invalidate_on_write),
                             .memory_latency = 30,
                             .reads = blocks,
@@ -274,4 +328,4 @@ TEST(RopStore, ModesAgreeUnderAllVisibilities) {
         });
 }
 
-} // namespace
+} // namespace output_rop_store_test

@@ -4,7 +4,7 @@
 #include "tests/support/quad_kit.hpp"
 #include "tests/support/sim_kit.hpp"
 
-namespace {
+namespace raster_early_depth_test {
 
 using Cycles = std::vector<sim::Cycle>;
 using pipeline::QuadTask;
@@ -93,4 +93,4 @@ TEST(EarlyDepthTest, RejectedQuadsTakeTheirTurnToo) {
     EXPECT_EQ(bench.sink.cycles(), (Cycles{4})); // the third group of four leaves at cycle 3
 }
 
-} // namespace
+} // namespace raster_early_depth_test

@@ -3,7 +3,7 @@
 #include "tests/support/quad_kit.hpp"
 #include "tests/support/sim_kit.hpp"
 
-namespace {
+namespace raster_rasterizer_test {
 
 using Cycles = std::vector<sim::Cycle>;
 using pipeline::QuadTask;
@@ -129,4 +129,4 @@ TEST(Rasterizer, SameInAllModes) {
     });
 }
 
-} // namespace
+} // namespace raster_rasterizer_test

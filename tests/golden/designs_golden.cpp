@@ -14,8 +14,10 @@ namespace {
 
 std::vector<std::string> row_of(const std::string& scene, const pipeline::RunResult& run) {
     std::vector<std::string> cells{scene, run.design};
-    for (const std::uint64_t number : {run.cycles, run.fragments, run.hazards.h1, run.hazards.h2, run.hazards.h3,
-                                       run.hazards.h4, run.wrong_pixels, run.lost_fragments})
+    for (const std::uint64_t number :
+         {run.cycles, run.fragments, run.hazards.of(pipeline::HazardClass::h1_in_flight),
+          run.hazards.of(pipeline::HazardClass::h2_write_path), run.hazards.of(pipeline::HazardClass::h3_stale_line),
+          run.hazards.of(pipeline::HazardClass::h4_torn_read), run.wrong_pixels, run.lost_fragments})
         cells.push_back(std::to_string(number));
     return cells;
 }

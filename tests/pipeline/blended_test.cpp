@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace {
+namespace blended_test {
 
 support::ReplayOptions blended(std::vector<std::string> knobs) {
     support::ReplayOptions options;
@@ -12,8 +12,6 @@ support::ReplayOptions blended(std::vector<std::string> knobs) {
     options.knobs = std::move(knobs);
     return options;
 }
-
-} // namespace
 
 TEST(Blended, EveryModeAndFormatEqualsTheReferenceBitForBit) {
     for (const char* mode : {"replace", "over", "add", "least", "greatest"})
@@ -41,3 +39,5 @@ TEST(Blended, OneFragmentOverTheBackgroundIsTheClosedForm) {
     for (int channel = 0; channel < 3; ++channel)
         EXPECT_FLOAT_EQ(result.colour.at(static_cast<std::size_t>(channel)), colours[channel] * 0.25F + 0.5F * 0.75F);
 }
+
+} // namespace blended_test

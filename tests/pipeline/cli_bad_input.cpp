@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <gtest/gtest.h>
 
-namespace {
+namespace cli_bad_input_test {
 
 using ropsim_test::run_program;
 using ropsim_test::TemporaryFolder;
@@ -38,7 +38,8 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         Mistake{{},
                 2,
-                "expected a subcommand: compare, run, truth, accuracy, geometry, validate, calibrate, study, describe"},
+                "expected a subcommand: compare, run, truth, accuracy, geometry, validate, calibrate, study, "
+                "sensitivity, describe"},
         Mistake{{"compar"}, 2, "did you mean 'compare'?"}, Mistake{{"compare"}, 2, "scene is required"},
         Mistake{{"compare", "gen:stack", "--desings", "x"}, 2, "did you mean '--designs'?"},
         Mistake{{"compare", "gen:stack", "more"}, 2, "unexpected argument 'more'"},
@@ -51,6 +52,10 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{{"accuracy", "gen:stack", "--k", "2", "--sweep", "k=1"}, 1, "--sweep: 'k' is set for all points"},
         Mistake{{"accuracy", "gen:stack", "--sweep", "k=1", "--averaged", "4"}, 1, "--averaged"},
         Mistake{{"accuracy", "gen:stack", "--design", "a,b"}, 1, "--design: expected one design"},
+        Mistake{{"sensitivity", "gen:stack", "--factor", "1"}, 1, "--factor: expected a number above 1"},
+        Mistake{{"sensitivity", "gen:stack", "--size", "16x16", "--parameters", "rop.quee"},
+                1,
+                "did you mean 'rop.queue'?"},
         Mistake{{"describe", "scorebord"}, 1, "did you mean 'scoreboard'?"}));
 
 INSTANTIATE_TEST_SUITE_P(
@@ -69,6 +74,11 @@ INSTANTIATE_TEST_SUITE_P(
                       Mistake{compare_with("--designs", "blendr"), 1, "did you mean 'blender'?"},
                       Mistake{compare_with("--designs", "blender,blender"), 1, "named twice"},
                       Mistake{compare_with("--designs", ","), 1, "separated by commas"},
+                      Mistake{compare_with("--designs", "existing?visibilty=x"), 1,
+                              "did you mean 'existing.visibility'?"},
+                      Mistake{compare_with("--designs", "blender?scene=gen:stack"), 1, "is of the frame"},
+                      Mistake{compare_with("--equal-area", "much"), 1, "--equal-area: expected bytes"},
+                      Mistake{compare_with("--equal-area", "10"), 1, "no design fits into 10 bytes"},
                       Mistake{compare_with("--gpu", "neutrl"), 1, "did you mean 'neutral'?"},
                       Mistake{compare_with("--workload", "transparancy"), 1, "did you mean 'transparency'?"},
                       Mistake{compare_with("--set", "rop.quue=3"), 1, "did you mean 'rop.queue'?"},
@@ -99,6 +109,13 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{{"validate", "peeling", "--gpus", "g70"}, 1, "'g70' was not measured"},
         Mistake{{"validate", "peeling", "--fidelity", "estimate"}, 1, "expected one of sampled, detailed"},
         Mistake{{"calibrate", "geometry", "--write", "/no/such"}, 1, "--write: /no/such"},
+        Mistake{{"calibrate", "geometri"}, 1, "expected geometry or peeling, got 'geometri'"},
+        Mistake{{"calibrate", "geometry", "--gpus", "g80"}, 1, "'g80' was not measured"},
+        Mistake{{"calibrate", "geometry", "--folds", "1"}, 1, "--folds: expected 2 to 1000"},
+        Mistake{{"calibrate", "geometry", "--folds", "two"}, 1, "--folds"},
+        Mistake{{"calibrate", "geometry", "--folds", "2", "--write", "."}, 1, "--folds: what folds find is not"},
+        Mistake{{"calibrate", "peeling", "--gpus", "g70"}, 1, "'g70' was not measured"},
+        Mistake{{"calibrate", "peeling", "--fidelity", "estimate"}, 1, "expected one of sampled, detailed"},
         Mistake{{"study", "batchin"}, 1, "did you mean 'batching'?"},
         Mistake{{"study", "/no/such.toml"}, 1, "/no/such.toml: cannot be read"}));
 
@@ -186,4 +203,4 @@ TEST_F(CliBadScene, GoodOneIsAccepted) {
     EXPECT_EQ(outcome.status, 0) << outcome.error;
 }
 
-} // namespace
+} // namespace cli_bad_input_test

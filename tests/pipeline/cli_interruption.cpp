@@ -8,7 +8,7 @@
 #include <thread>
 #include <unistd.h>
 
-namespace {
+namespace cli_interruption_test {
 
 using Clock = std::chrono::steady_clock;
 using ropsim_test::run_program;
@@ -106,4 +106,4 @@ TEST(CliInterruption, ReadOnlyFolderIsToldBeforeTheRun) {
     EXPECT_LT(outcome.seconds, patience);
 }
 
-} // namespace
+} // namespace cli_interruption_test

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <gtest/gtest.h>
 
-namespace {
+namespace cli_results_test {
 
 using nlohmann::json;
 using ropsim_test::file_text;
@@ -33,6 +33,73 @@ TEST(CliResults, JsonIsOneDocumentThatFollowsTheSchema) {
     EXPECT_EQ(ropsim_test::schema_violations(schema, json_of(comparison({"--json"}))), std::vector<std::string>());
     EXPECT_EQ(ropsim_test::schema_violations(schema, json_of(comparison({"--json", "--workload", "opaque"}))),
               std::vector<std::string>());
+}
+
+TEST(CliResults, WithoutDesignsUnprotectedHardwareIsShownAtEveryVisibility) {
+    const json result = json_of({"compare", "gen:discs?n=200", "--size", "64x64", "--json"});
+    std::vector<std::string> variants;
+    for (const json& design : result["designs"]) variants.push_back(design["variant"]);
+    EXPECT_EQ(variants, (std::vector<std::string>{"existing?visibility=rop_cache", "existing?visibility=writeback",
+                                                  "existing?visibility=never_until_flush", "scoreboard", "blender",
+                                                  "multipass"}));
+    const auto text = run_program({"compare", "gen:discs?n=200", "--size", "64x64"});
+    EXPECT_NE(text.out.find("speed: times that of existing writeback"), std::string::npos) << text.out;
+}
+
+TEST(CliResults, EveryVariantHasARowAColumnAndAFolderOfItsOwn) {
+    const json schema = json::parse(file_text(ropsim_test::source_dir() / "reports/result.schema.json"));
+    const TemporaryFolder folder;
+    const json result = json_of({"compare", "gen:discs?n=200", "--size", "64x64", "--designs",
+                                 "existing?bypass_l1=true&visibility=rop_cache,existing,blender?rop.queue=64,multipass",
+                                 "--json", "--out", folder.path().string()});
+    EXPECT_EQ(ropsim_test::schema_violations(schema, result), std::vector<std::string>());
+    std::vector<std::string> ids;
+    for (const json& design : result["designs"]) {
+        ids.push_back(design["id"]);
+        EXPECT_TRUE(std::filesystem::is_directory(folder.path() / ids.back())) << ids.back();
+    }
+    EXPECT_EQ(ids, (std::vector<std::string>{"existing-1", "existing-2", "blender-1", "multipass"}));
+    EXPECT_EQ(result["designs"][0]["parameters"]["bypass_l1"], true);
+    EXPECT_EQ(result["designs"][1]["parameters"]["bypass_l1"], false);
+    EXPECT_EQ(result["designs"][2]["gpu_changes"], json({{"rop.queue", 64}}));
+    const std::string table = file_text(folder.path() / "designs.csv");
+    EXPECT_NE(table.find("existing-1,existing?bypass_l1=true&visibility=rop_cache,"), std::string::npos) << table;
+}
+
+TEST(CliResults, ADesignMayBringItsSettingsWhereverOneIsNamed) {
+    const json run =
+        json_of({"run", "gen:stack", "--size", "16x16", "--design", "scoreboard?side_buffer=64", "--json"});
+    EXPECT_EQ(run["designs"][0]["parameters"]["side_buffer"], 64);
+}
+
+TEST(CliResults, EqualAreaSaysWhatTheCachesGotAndWhatDoesNotFit) {
+    const json schema = json::parse(file_text(ropsim_test::source_dir() / "reports/result.schema.json"));
+    const std::vector<std::string> arguments{"compare",      "gen:discs?n=200", "--size",
+                                             "64x64",        "--designs",       "existing,blender,multipass",
+                                             "--equal-area", "300000"};
+    auto with_json = arguments;
+    with_json.emplace_back("--json");
+    const json result = json_of(with_json);
+    EXPECT_EQ(ropsim_test::schema_violations(schema, result), std::vector<std::string>());
+    EXPECT_EQ(result["equal_area"]["bytes"], 300000);
+    EXPECT_EQ(result["equal_area"]["does_not_fit"][0]["id"], "existing");
+    for (const json& design : result["designs"]) EXPECT_LE(design["area"]["total_bytes"], 300000);
+    const std::string text = run_program(arguments).out;
+    EXPECT_NE(text.find("existing  does not fit: needs "), std::string::npos) << text;
+    EXPECT_NE(text.find("tile caches got"), std::string::npos) << text;
+    auto largest = arguments;
+    largest.pop_back();
+    EXPECT_EQ(run_program(largest).status, 0);
+}
+
+TEST(CliResults, SensitivityWritesItsTablesAndItsPage) {
+    const TemporaryFolder folder;
+    const json result = json_of({"sensitivity", "gen:discs?n=50", "--size", "32x32", "--designs", "interlock,blender",
+                                 "--parameters", "rop.queue", "--json", "--out", folder.path().string()});
+    EXPECT_EQ(result["parameters"][0]["steps"].size(), 2U);
+    EXPECT_EQ(result["conclusions"].size(), 1U);
+    for (const char* file : {"sensitivity.json", "sensitivity.csv", "conclusions.csv", "report.html"})
+        EXPECT_TRUE(std::filesystem::exists(folder.path() / file)) << file;
 }
 
 TEST(CliResults, SamplesAreStatedAndCounted) {
@@ -159,4 +226,4 @@ TEST(CliResults, DescribeKnowsEveryTopicAndEveryNameInIt) {
     }
 }
 
-} // namespace
+} // namespace cli_results_test

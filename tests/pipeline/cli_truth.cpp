@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-namespace {
+namespace cli_truth_test {
 
 using nlohmann::json;
 using ropsim_test::file_text;
@@ -168,4 +168,4 @@ TEST_F(CliTruth, MissingModuleIsOneLine) {
     EXPECT_EQ(std::count(outcome.error.begin(), outcome.error.end(), '\n'), 1) << outcome.error;
 }
 
-} // namespace
+} // namespace cli_truth_test

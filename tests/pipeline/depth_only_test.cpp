@@ -14,7 +14,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-namespace {
+namespace depth_only_test {
 
 reports::ComparisonInput depth_only_input() {
     const traces::Scene scene = traces::load_scene("gen:discs?n=20&width=64&height=48");
@@ -31,7 +31,8 @@ reports::ComparisonInput depth_only_input() {
     input.streams = pipeline::rasterize_frame(*input.frame, {});
     input.reference = pipeline::run_reference(*input.frame, input.streams, 1, 1);
     sim::Config config;
-    for (const char* design : {"existing", "multipass"}) input.designs.push_back(models::make_design(design, config));
+    for (const char* design : {"existing", "multipass"})
+        input.designs.push_back({reports::parse_variant(design), design, models::make_design(design, config), {}});
     return input;
 }
 
@@ -59,4 +60,4 @@ TEST(DepthOnly, HasAReport) {
     EXPECT_TRUE(std::filesystem::exists(folder.path() / "report.html"));
 }
 
-} // namespace
+} // namespace depth_only_test

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace {
+namespace design_from_outside_test {
 
 struct SerialParams {
     std::uint32_t triangles = 1;
@@ -43,8 +43,6 @@ pipeline::RunResult run(const support::Replay& replay, const std::vector<std::st
     return pipeline::Machine({}, replay.frame, replay.streams, *design).run(replay.reference);
 }
 
-} // namespace
-
 TEST(DesignFromOutside, RunsLikeThoseOfTheLibrary) {
     const support::Replay replay("gen:blob?triangles=600", {.width = 32, .height = 32});
     const pipeline::RunResult protect = run(replay, {});
@@ -56,3 +54,5 @@ TEST(DesignFromOutside, RunsLikeThoseOfTheLibrary) {
     EXPECT_LT(rarely.cycles, protect.cycles);
     EXPECT_THROW(run(replay, {"serial.triangles=0"}), sim::InputError);
 }
+
+} // namespace design_from_outside_test

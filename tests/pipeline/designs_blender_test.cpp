@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-namespace {
+namespace designs_blender_test {
 
 using pipeline::RunResult;
 using support::counter;
@@ -30,8 +30,6 @@ double same_pixel_interval(const Settings& settings, const std::vector<std::stri
 
 const std::vector<std::string> four_rgbz{"k=4", "entry=rgbz"}, sixteen_z{"k=16", "entry=z"};
 
-} // namespace
-
 TEST(BlenderDesign, K12_StallingPixelComesBackAfterTheLatency) {
     for (const int latency : {16, 24, 100}) {
         const Settings settings{"blender.interlock=stall", fmt::format("blender.latency={}", latency)};
@@ -52,8 +50,8 @@ TEST(BlenderDesign, K12_CostIsThatOfTheLanesOrOfThePort) {
     EXPECT_NEAR(
         same_pixel_interval({"blender.interlock=forward", "blender.lanes=36", "blender.port_bytes=64"}, four_rgbz), 2,
         0.05);
-    // One ROP per partition works on the four fragments of a quad one after the other.
-    EXPECT_NEAR(same_pixel_interval({"blender.interlock=forward", "rop.units=4"}, four_rgbz), 36, 0.05);
+    // A quad is the work of one group of four ROPs, however many groups there are.
+    EXPECT_NEAR(same_pixel_interval({"blender.interlock=forward", "rop.units=4"}, four_rgbz), 9, 0.05);
 }
 
 TEST(BlenderDesign, K12_LatencyBelowTheCostDoesNotSpeedItUp) {
@@ -136,3 +134,5 @@ TEST(BlenderDesign, K10_FrontToBackInsertsKAndBackToFrontAll) {
         EXPECT_EQ(insertions("back-to-front"), std::uint64_t{16} * 64 * 64);
     }
 }
+
+} // namespace designs_blender_test

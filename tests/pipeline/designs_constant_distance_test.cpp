@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-namespace {
+namespace designs_constant_distance_test {
 
 using pipeline::QuadId;
 using support::Replay;
@@ -32,8 +32,6 @@ const Replay& stack_of_64(std::uint32_t k) {
     return made.emplace(k, Replay("gen:stack?n=64", {.width = 16, .height = 16, .knobs = {fmt::format("k={}", k)}}))
         .first->second;
 }
-
-} // namespace
 
 TEST(ConstantDistance, K1_SurvivorsOfAStackOf64AreEveryHthFromTheLast) {
     const Replay& replay = stack_of_64(64);
@@ -147,3 +145,5 @@ TEST(ConstantDistance, K4_HazardFractionOfRandomQuadsOver262144Pixels) {
     EXPECT_NEAR(fraction, 1.0 - std::pow(1.0 - 4.0 / 262'144.0, 1536.0), 0.003);
     EXPECT_NEAR(fraction, 0.0232, 0.003);
 }
+
+} // namespace designs_constant_distance_test

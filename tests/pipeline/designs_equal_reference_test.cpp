@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-namespace {
+namespace designs_equal_reference_test {
 
 using pipeline::RunResult;
 using support::Replay;
@@ -64,8 +64,6 @@ void expect_reference_of_both(const std::string& design, const Settings& setting
     expect_reference(mesh(), design, settings);
     expect_reference(layers(), design, settings);
 }
-
-} // namespace
 
 TEST(EqualReference, K3_OnEveryGeneratorWithColours) {
     for (const std::string& scene : generated_scenes) {
@@ -136,14 +134,18 @@ TEST(EqualReference, K3_ScoreboardReleasedTooEarlyOrReadingStaleLinesIsNotProtec
     // Release at the ROP's commit needs reads that look into its tile cache.
     const RunResult early =
         layers().run("scoreboard", {"scoreboard.release=rop_commit", "scoreboard.visibility=writeback"});
-    EXPECT_GT(early.hazards.h2, 0U);
-    EXPECT_EQ(early.hazards.h1 + early.hazards.h3, 0U);
+    EXPECT_GT(early.hazards.of(pipeline::HazardClass::h2_write_path), 0U);
+    EXPECT_EQ(early.hazards.of(pipeline::HazardClass::h1_in_flight) +
+                  early.hazards.of(pipeline::HazardClass::h3_stale_line),
+              0U);
     EXPECT_GT(early.wrong_pixels, 0U);
     EXPECT_EQ(early.unexplained_pixels, 0U);
     // Through the texture cache, lines that were filled before survive the scoreboard.
     const RunResult stale = layers().run("scoreboard", {"scoreboard.bypass_l1=false", "texture.l1_bytes=1048576"});
-    EXPECT_GT(stale.hazards.h3, 0U);
-    EXPECT_EQ(stale.hazards.h1 + stale.hazards.h2, 0U);
+    EXPECT_GT(stale.hazards.of(pipeline::HazardClass::h3_stale_line), 0U);
+    EXPECT_EQ(stale.hazards.of(pipeline::HazardClass::h1_in_flight) +
+                  stale.hazards.of(pipeline::HazardClass::h2_write_path),
+              0U);
     EXPECT_EQ(stale.unexplained_pixels, 0U);
 }
 
@@ -191,8 +193,10 @@ TEST(EqualReference, K3_OnEveryShapeOfMachine) {
     for (const Settings& shape :
          {Settings{"memory.partitions=1"}, Settings{"memory.partitions=3"}, Settings{"memory.partitions=8"},
           Settings{"fragment.pipes=1"}, Settings{"fragment.pipes=13"}, Settings{"fragment.quads_in_flight=1"},
-          Settings{"reorder_buffer.quads=7"}, Settings{"rop.cache_tiles=1"},
-          Settings{"rop.queue=1", "crossbar.queue=1"}, Settings{"rop.units=1"}, Settings{"rop.fast_clear=true"},
+          Settings{"reorder_buffer.quads=7"},
+          Settings{"rop.depth_cache_bytes=256", "rop.colour_cache_bytes=1024", "rop.kbuffer_cache_bytes=1024"},
+          Settings{"rop.queue=1", "crossbar.queue=1"}, Settings{"rop.units=4"}, Settings{"rop.units=20"},
+          Settings{"rop.fast_clear=true", "rop.clear_sectors=100"}, Settings{"rop.fast_clear=true"},
           Settings{"memory.clock_mhz=800"}, Settings{"memory.controller.jitter_cycles=500"},
           Settings{"texture.l1_bytes=0"}, Settings{"raster.quads_per_clk=16", "raster.tiles_per_clk=8"},
           Settings{"fragment.registers=8"}})
@@ -271,3 +275,5 @@ TEST(EqualReference, OpaqueWorkloadIsTheReferenceInEveryDesign) {
         }
     }
 }
+
+} // namespace designs_equal_reference_test

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <map>
 
-namespace {
+namespace designs_existing_test {
 
 using pipeline::HazardClass;
 using pipeline::HazardPair;
@@ -43,8 +43,6 @@ const Replay& two_layers() {
     return replay;
 }
 
-} // namespace
-
 TEST(Existing, L1_AtomicReadsOnlyRemoveFragments) {
     const support::TrueFragments fragments(discs());
     for (const char* visibility : {"rop_cache", "writeback", "never_until_flush"}) {
@@ -55,7 +53,7 @@ TEST(Existing, L1_AtomicReadsOnlyRemoveFragments) {
                              "memory.controller.jitter_cycles=200"},
                             {.seed = seed});
             EXPECT_GT(run.hazards.total(), 0U);
-            EXPECT_EQ(run.hazards.h4, 0U);
+            EXPECT_EQ(run.hazards.of(HazardClass::h4_torn_read), 0U);
             EXPECT_EQ(fragments.first_violation_of_l1(run.kbuffer), "") << visibility << ", seed " << seed;
         }
     }
@@ -101,7 +99,7 @@ TEST(Existing, HazardPairsNameTheLatestPredecessorThatWasMissed) {
         EXPECT_EQ(*(victim - 1), pair.aggressor); // stores are in raster order: what was missed includes the last one
         EXPECT_GE(pair.missing, 1U);
         EXPECT_LE(pair.missing, victim - list.begin());
-        if (pair.kind != HazardClass::h3_stale_line) {
+        if (pair.cause != HazardClass::h3_stale_line) {
             EXPECT_LT(pair.read, pair.write + 100'000);
         }
     }
@@ -110,8 +108,8 @@ TEST(Existing, HazardPairsNameTheLatestPredecessorThatWasMissed) {
 TEST(Existing, K2_RevisitAfter65536QuadsHasNoHazardInFlightOrOnTheWritePath) {
     const RunResult run = two_layers().run("existing");
     EXPECT_GE(two_layers().kbuffer_stream().quads.size(), 131'072U);
-    EXPECT_EQ(run.hazards.h1, 0U);
-    EXPECT_EQ(run.hazards.h2, 0U);
+    EXPECT_EQ(run.hazards.of(HazardClass::h1_in_flight), 0U);
+    EXPECT_EQ(run.hazards.of(HazardClass::h2_write_path), 0U);
 }
 
 TEST(Existing, K2_SmallTextureCacheHasEvictedEveryLineBeforeTheRevisit) {
@@ -124,9 +122,9 @@ TEST(Existing, K2_UnboundedTextureCacheIsStaleAtEveryPixel) {
     // One pipe, so that the layer in front reads through the cache that the layer behind has filled.
     for (const char* visibility : {"rop_cache", "writeback"}) {
         const RunResult run = two_layers().run("existing", {"existing.tex_coherence=none", "texture.l1_bytes=67108864",
-                                                            "fragment.pipes=1", "rop.cache_tiles=4",
+                                                            "fragment.pipes=1", "rop.kbuffer_cache_bytes=8192",
                                                             std::string("existing.visibility=") + visibility});
-        EXPECT_EQ(run.hazards.h3, 512U * 512U) << visibility;
+        EXPECT_EQ(run.hazards.of(HazardClass::h3_stale_line), 512U * 512U) << visibility;
         EXPECT_EQ(run.hazards.total(), 512U * 512U) << visibility;
         EXPECT_EQ(run.hazards.pixels, 512U * 512U) << visibility;
         EXPECT_EQ(run.wrong_pixels, 512U * 512U) << visibility;
@@ -135,9 +133,9 @@ TEST(Existing, K2_UnboundedTextureCacheIsStaleAtEveryPixel) {
 }
 
 TEST(Existing, K2_CoherentUnboundedTextureCacheHasNoStaleLine) {
-    const RunResult run =
-        two_layers().run("existing", {"existing.tex_coherence=invalidate_on_write", "texture.l1_bytes=67108864",
-                                      "fragment.pipes=1", "rop.cache_tiles=4", "existing.visibility=rop_cache"});
+    const RunResult run = two_layers().run(
+        "existing", {"existing.tex_coherence=invalidate_on_write", "texture.l1_bytes=67108864", "fragment.pipes=1",
+                     "rop.kbuffer_cache_bytes=8192", "existing.visibility=rop_cache"});
     EXPECT_EQ(run.hazards.total(), 0U);
 }
 
@@ -146,7 +144,7 @@ TEST(Existing, InvalidationOnWriteLeavesNoStaleLines) {
         const RunResult run = discs().run("existing", {"existing.tex_coherence=invalidate_on_write",
                                                        std::string("existing.visibility=") + visibility});
         EXPECT_GT(run.hazards.total(), 0U) << visibility;
-        EXPECT_EQ(run.hazards.h3, 0U) << visibility;
+        EXPECT_EQ(run.hazards.of(HazardClass::h3_stale_line), 0U) << visibility;
     }
 }
 
@@ -163,7 +161,7 @@ TornRun random_quads_run(std::uint32_t quads, bool atomic) {
                                 "existing.visibility=rop_cache", "memory.controller.jitter_cycles=50"});
     EXPECT_EQ(run.fragments, std::uint64_t{4} * quads);
     EXPECT_GT(run.hazards.total(), 0U);
-    TornRun torn{.h4 = run.hazards.h4};
+    TornRun torn{.h4 = run.hazards.of(HazardClass::h4_torn_read)};
     for (const pipeline::LayerErrors& layer : run.layers) {
         torn.duplicate += layer.duplicate;
         torn.unsorted += layer.unsorted;
@@ -248,8 +246,8 @@ TEST(Existing, K7_FlushWithoutWriteBackLeavesStoresUnseen) {
     for (const char* visibility : {"writeback", "never_until_flush"}) {
         const RunResult run =
             flushed_layers({"existing.writeback=false", std::string("existing.visibility=") + visibility});
-        EXPECT_GT(run.hazards.h2, 0U) << visibility;
-        EXPECT_EQ(run.hazards.h1, 0U) << visibility;
+        EXPECT_GT(run.hazards.of(HazardClass::h2_write_path), 0U) << visibility;
+        EXPECT_EQ(run.hazards.of(HazardClass::h1_in_flight), 0U) << visibility;
     }
     // Where reads look into the ROP's tile cache there is nothing to write back.
     EXPECT_EQ(flushed_layers({"existing.writeback=false", "existing.visibility=rop_cache"}).hazards.total(), 0U);
@@ -259,13 +257,13 @@ TEST(Existing, K7_FlushWithoutInvalidationLeavesStaleLines) {
     for (const char* visibility : {"rop_cache", "writeback", "never_until_flush"}) {
         const RunResult run =
             flushed_layers({"existing.invalidate=false", std::string("existing.visibility=") + visibility});
-        EXPECT_GT(run.hazards.h3, 0U) << visibility;
-        EXPECT_EQ(run.hazards.h1, 0U) << visibility;
+        EXPECT_GT(run.hazards.of(HazardClass::h3_stale_line), 0U) << visibility;
+        EXPECT_EQ(run.hazards.of(HazardClass::h1_in_flight), 0U) << visibility;
     }
 }
 
 TEST(Existing, K7_FlushWithoutDrainLeavesStoresInFlight) {
-    EXPECT_GT(flushed_layers({"existing.drain=false", "fragment.pipes=24"}).hazards.h1, 0U);
+    EXPECT_GT(flushed_layers({"existing.drain=false", "fragment.pipes=24"}).hazards.of(HazardClass::h1_in_flight), 0U);
 }
 
 TEST(Existing, FlushAtDrawBoundariesSeparatesDraws) {
@@ -312,3 +310,5 @@ TEST(Existing, LongLosesFragmentsOnTheDemoScene) {
     EXPECT_EQ(run.unexplained_pixels, 0U);
     RecordProperty("hazards_per_million", static_cast<int>(1'000'000 * run.hazards.total() / run.fragments));
 }
+
+} // namespace designs_existing_test

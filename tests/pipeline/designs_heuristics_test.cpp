@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-namespace {
+namespace designs_heuristics_test {
 
 using pipeline::RunResult;
 using support::counter;
@@ -24,8 +24,6 @@ double hazards(const char* design) {
             mesh().run(design, {"memory.controller.jitter_cycles=100"}, {.seed = seed}).hazards.total());
     return sum / 4;
 }
-
-} // namespace
 
 TEST(Heuristics, K6_SortingAndBatchingBothReduceHazards) {
     const double existing = hazards("existing"), sorted = hazards("sorted"), batched = hazards("batched"),
@@ -106,3 +104,5 @@ TEST(Heuristics, ABatchTakesTheTimeOfTheFlushingQuad) {
     };
     EXPECT_NEAR(cycles(1) - cycles(2), 4608, 0.02 * 4608);
 }
+
+} // namespace designs_heuristics_test

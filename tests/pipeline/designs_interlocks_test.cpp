@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-namespace {
+namespace designs_interlocks_test {
 
 using pipeline::RunResult;
 using support::counter;
@@ -19,8 +19,6 @@ double cycles(const RunResult& run) { return static_cast<double>(support::pass_n
 Replay overlapping(std::uint32_t layers) {
     return Replay(fmt::format("gen:stack?n={}&x=0&y=0&w=32&h=32", layers), {.width = 64, .height = 64});
 }
-
-} // namespace
 
 TEST(RopInterlocks, AreNearlyFreeWithoutOverlap) {
     const Replay screen("gen:quads?n=1", {.width = 256, .height = 256});
@@ -94,7 +92,7 @@ TEST(ShaderInterlock, AStackOnOnePixelTakesItsLengthTimesReadAndStore) {
     // One critical section at a time: a read, the program, the way to the ROP, and the release back to the table.
     const Replay replay("gen:stack?n=500&order=random", {.width = 16, .height = 16});
     const double slow = cycles(replay.run("interlock")),
-                 fast = cycles(replay.run("interlock", {"rop.read_latency=20"}));
+                 fast = cycles(replay.run("interlock", {"rop.read_request_latency=10", "rop.read_return_latency=10"}));
     EXPECT_NEAR(slow - fast, 500.0 * 260, 0.02 * 500 * 260);
     EXPECT_LT(slow, cycles(replay.run("scoreboard"))); // which adds shading and dispatch to each
 }
@@ -151,3 +149,5 @@ TEST(Detect, SeesEveryHazardThatItsNumbersCanTell) {
     EXPECT_EQ(of(1, "hazards_detected") + of(1, "hazards_overlooked"), plain.hazards.total());
     EXPECT_GT(of(1, "hazards_overlooked"), 0U);
 }
+
+} // namespace designs_interlocks_test

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-namespace {
+namespace designs_multipass_test {
 
 using pipeline::RunResult;
 using support::counter;
@@ -19,8 +19,6 @@ const Replay& layers(std::uint32_t k) {
         .emplace(k, Replay("gen:quads?n=6&order=random", {64, 64, "transparency", "auto", {fmt::format("k={}", k)}}))
         .first->second;
 }
-
-} // namespace
 
 TEST(MultipassDesign, ExecutesOnePassPerLayerWithTheWholeGeometry) {
     for (const std::uint32_t k : {1U, 4U, 6U, 9U}) {
@@ -61,3 +59,5 @@ TEST(MultipassDesign, PassesCostTheSameEachWhereGeometryBinds) {
         static_cast<double>(four.run("multipass").cycles) / static_cast<double>(one.run("multipass").cycles);
     EXPECT_NEAR(ratio, 4.0, 0.12);
 }
+
+} // namespace designs_multipass_test

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-namespace {
+namespace designs_order_free_test {
 
 using pipeline::RunResult;
 using support::counter;
@@ -28,8 +28,6 @@ Replay all_at_one_depth() {
     replay.reference = pipeline::run_reference(replay.frame, replay.streams);
     return replay;
 }
-
-} // namespace
 
 TEST(PeelRop, K15_EarlyRejectionNeverChangesTheResult) {
     for (const char* order : {"front-to-back", "back-to-front", "random"}) {
@@ -158,3 +156,5 @@ TEST(OrderFree, TheUnitOfTheRopAcceptsAShareThatGrowsWithK) {
         before = share;
     }
 }
+
+} // namespace designs_order_free_test

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-namespace {
+namespace designs_programs_test {
 
 using pipeline::RunResult;
 using support::Replay;
@@ -35,8 +35,6 @@ std::size_t different_floats(const std::vector<float>& a, const std::vector<floa
     for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) count += a[i] != b[i] ? 1U : 0U;
     return count;
 }
-
-} // namespace
 
 TEST(Programs, K13_ProtectedDesignsGiveTheReferenceWhereOrderMatters) {
     for (const std::string& scene : scenes)
@@ -130,3 +128,5 @@ TEST(Programs, TheProgramRunsThemAsAUserWould) {
     EXPECT_NE(refused.error.find("'multipass' cannot run the program order-and-blend"), std::string::npos);
     EXPECT_EQ(run({"nearest", "--designs", "existing"}).status, 1);
 }
+
+} // namespace designs_programs_test

@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-namespace {
+namespace designs_shared_scenes_test {
 
 using nlohmann::json;
 using pipeline::RunResult;
@@ -109,4 +109,4 @@ TEST(EqualReference, K3_LongEveryProtectedDesignOnSharedTetrahedra) {
     }
 }
 
-} // namespace
+} // namespace designs_shared_scenes_test

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-namespace {
+namespace interleaving_test {
 
 using support::counter;
 using support::Replay;
@@ -22,8 +22,6 @@ double vertex_bytes(const std::string& scene, std::uint32_t n, const char* layou
 double separate_over_interleaved(const std::string& scene, std::uint32_t n, const char* cache_bytes) {
     return vertex_bytes(scene, n, "separate", cache_bytes) / vertex_bytes(scene, n, "interleaved", cache_bytes);
 }
-
-} // namespace
 
 TEST(Interleaving, G8ColdRandomOrderSavesWhatTheLinesOfARecordPredict) {
     // A cache far smaller than the data, and no locality: every vertex comes from memory.
@@ -47,3 +45,5 @@ TEST(Interleaving, G8SequentialOrderSavesLittle) {
         EXPECT_LE(ratio, 1.3) << n;
     }
 }
+
+} // namespace interleaving_test

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <gtest/gtest.h>
 
-namespace {
+namespace machine_extremes_test {
 
 using pipeline::RunResult;
 using support::counter;
@@ -43,8 +43,6 @@ std::uint64_t peak_memory_bytes() {
         }
     return 0;
 }
-
-} // namespace
 
 TEST(Extremes, NothingIsVisible) {
     for (const std::string& workload : both_workloads) {
@@ -99,8 +97,8 @@ TEST(Extremes, OddViewports) {
                 if (std::string(scene).starts_with("gen:discs") && (width < 3 || height < 3)) continue;
                 const Replay replay(scene, {width, height, workload});
                 expect_good_runs(replay);
-                expect_good_runs(replay,
-                                 {"scoreboard.granularity=tile16", "scoreboard.entries=3", "memory.partitions=3"});
+                expect_good_runs(replay, {"scoreboard.granularity=tile16", "scoreboard.entries=3",
+                                          "memory.partitions=3", "rop.units=12"});
             }
         }
         const Replay layers("gen:quads?n=9", {.width = width, .height = height});
@@ -155,8 +153,8 @@ TEST(Extremes, OpacityNoneAndFull) {
 
 TEST(Extremes, SixtyFourEntries) {
     for (const char* entry : {"entry=z", "entry=rgbz"}) {
-        const Replay replay("gen:discs?n=400&overlap=80&width=32&height=32&segments=8",
-                            {32, 32, "transparency", "auto", {"k=64", entry}});
+        const Replay replay("gen:discs?n=200&overlap=80&width=16&height=16&segments=8",
+                            {16, 16, "transparency", "auto", {"k=64", entry}});
         SCOPED_TRACE(entry);
         expect_good_runs(replay);
         expect_good_runs(replay, {"existing.atomic_reads=true", "scoreboard.visibility=writeback"});
@@ -192,8 +190,10 @@ TEST(Extremes, SmallestMachine) {
                             "reorder_buffer.quads=1",
                             "reorder_buffer.retire_per_clk=1",
                             "memory.partitions=1",
-                            "rop.units=1",
-                            "rop.cache_tiles=1",
+                            "rop.units=4",
+                            "rop.depth_cache_bytes=256",
+                            "rop.colour_cache_bytes=1024",
+                            "rop.kbuffer_cache_bytes=1024",
                             "rop.queue=1",
                             "crossbar.queue=1",
                             "raster.quads_per_clk=1",
@@ -214,9 +214,10 @@ TEST(Extremes, EachQueueAtItsSmallest) {
     const Replay replay("gen:discs?n=60&overlap=8&width=32&height=32", {.width = 32, .height = 32});
     for (const char* setting :
          {"fragment.pipes=1", "fragment.quads_in_flight=1", "reorder_buffer.quads=1", "reorder_buffer.retire_per_clk=1",
-          "memory.partitions=1", "rop.cache_tiles=1", "rop.queue=1", "crossbar.queue=1", "crossbar.bytes_per_clk=1",
+          "memory.partitions=1", "rop.depth_cache_bytes=256", "rop.colour_cache_bytes=1024",
+          "rop.kbuffer_cache_bytes=1024", "rop.queue=1", "crossbar.queue=1", "crossbar.bytes_per_clk=1",
           "raster.quads_per_clk=1", "texture.l1_bytes=0", "texture.l1_bytes=64", "memory.controller.queue=1",
-          "fragment.registers=1", "rop.read_latency=1", "rop.bytes_per_clk=1"}) {
+          "fragment.registers=1", "rop.read_return_latency=1", "rop.bytes_per_clk=1"}) {
         SCOPED_TRACE(setting);
         expect_good_runs(replay, {setting});
     }
@@ -226,8 +227,8 @@ TEST(Extremes, LargestMachine) {
     const Replay replay("gen:discs?n=60&overlap=8&width=64&height=64", {.width = 64, .height = 64});
     for (const Settings& settings :
          {Settings{"fragment.pipes=60"}, Settings{"fragment.pipes=48", "fragment.quads_in_flight=4096"},
-          Settings{"memory.partitions=64"}, Settings{"rop.cache_tiles=65534"},
-          Settings{"rop.queue=4096", "crossbar.queue=4096"}, Settings{"rop.units=1024"},
+          Settings{"memory.partitions=64"}, Settings{"rop.kbuffer_cache_bytes=1073741824"},
+          Settings{"rop.queue=4096", "crossbar.queue=4096"}, Settings{"rop.units=256"},
           Settings{"fragment.pipes=60", "memory.partitions=64", "raster.quads_per_clk=64", "raster.tiles_per_clk=64",
                    "reorder_buffer.retire_per_clk=64"}}) {
         SCOPED_TRACE(fmt::format("{}", fmt::join(settings, " ")));
@@ -242,7 +243,8 @@ TEST(Extremes, FlushesOnTheSmallestMachineEnd) {
             const RunResult run = replay.run(
                 "existing", {"existing.flush_triangles=1", drain, std::string("existing.visibility=") + visibility,
                              "fragment.pipes=1", "fragment.quads_in_flight=1", "reorder_buffer.quads=1",
-                             "rop.cache_tiles=1", "rop.queue=1", "crossbar.queue=1"});
+                             "rop.depth_cache_bytes=256", "rop.colour_cache_bytes=1024", "rop.kbuffer_cache_bytes=1024",
+                             "rop.queue=1", "crossbar.queue=1"});
             EXPECT_EQ(run.unexplained_pixels, 0U);
             if (std::string(drain).ends_with("true")) {
                 EXPECT_EQ(run.hazards.total(), 0U);
@@ -259,3 +261,5 @@ TEST(Extremes, ClocksThatDoNotDivideEachOther) {
         expect_good_runs(replay, {clock});
     }
 }
+
+} // namespace machine_extremes_test

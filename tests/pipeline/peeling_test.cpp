@@ -1,4 +1,6 @@
 // Depth peeling on the GPU that it was measured on. Source: specification 004, sections 4.8 and 7.5, checks K8 and K9.
+#include "models/gpu_library.hpp"
+#include "models/kbuffers/library.hpp"
 #include "reports/peeling/report.hpp"
 #include "tests/support/replay.hpp"
 
@@ -6,11 +8,13 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <map>
+#include <set>
 
-namespace {
+namespace peeling_test {
 
 using reports::PeelingColumn;
 using reports::PublishedPeeling;
+using reports::RowStatus;
 
 const PublishedPeeling& published() {
     static const PublishedPeeling tables = reports::load_published_peeling();
@@ -60,8 +64,6 @@ void expect_k8_and_k9(const Expected& expected) {
     }
 }
 
-} // namespace
-
 TEST(Peeling, LongK8AndK9_Dragon) { expect_k8_and_k9({"Dragon", 40, 60}); }
 TEST(Peeling, LongK8AndK9_Powerplant) { expect_k8_and_k9({"Powerplant", 80, 135}); }
 
@@ -106,13 +108,6 @@ TEST(Peeling, ManySmallDrawsOfTheSameVerticesMakeTheSameStream) {
     EXPECT_GT(whole.kbuffer_stream().fragments, 0U);
 }
 
-TEST(PeelingTable, PrintedDigitsSayHowFarANumberWasRounded) {
-    EXPECT_DOUBLE_EQ(reports::printed_number("41.4").low(), 41.35);
-    EXPECT_DOUBLE_EQ(reports::printed_number("139").high(), 139.5);
-    EXPECT_THROW(reports::printed_number("x"), sim::InputError);
-    EXPECT_THROW(reports::printed_number("0"), sim::InputError);
-}
-
 TEST(PeelingTable, LinesGoThroughTheirPointsAndTellHowFarTheyMayMiss) {
     const auto exact = reports::line_value({1, 2, 4}, {3, 5, 9}, 10);
     EXPECT_NEAR(exact.value, 21, 1e-12);
@@ -148,30 +143,97 @@ TEST(Peeling, LongTheWholeMeshIsAsFarFromTheLineAsTheLineSays) {
     }
 }
 
-TEST(PeelingTable, RatiosAndBatchTimesFollowFromTheColumnsWithTheirRanges) {
+TEST(PeelingTable, QuotientsAndBatchTimesFollowFromTheColumnsAndAreNotCounted) {
     const auto& row = row_of("Dragon", 4);
     // As fast as published, to the digit.
     const auto numbers = reports::peeling_numbers(published(), row, {{871'000, {1e3 / 41.4, 1e3 / 139, 1e3 / 3.1}, 0}});
     ASSERT_EQ(numbers.size(), 7U);
-    EXPECT_NEAR(numbers[3].printed, 3.36, 0.005);         // SP/MP
-    EXPECT_NEAR(numbers[3].row.low, 138.5 / 41.45, 1e-9); // each of the two may have been rounded
-    EXPECT_NEAR(numbers[6].printed, 11.9, 0.05);          // us per batch
-    for (const auto& number : numbers) {
-        EXPECT_NEAR(number.row.model, number.printed, 1e-9 * number.printed);
-        EXPECT_NEAR(number.row.ratio(), 1, 1e-12);
-    }
-    EXPECT_EQ(numbers[0].row.status, reports::RowStatus::calibrated);
-    EXPECT_EQ(numbers[1].row.status, reports::RowStatus::predicted);
+    EXPECT_NEAR(numbers[3].row.published(), 3.36, 0.005);                        // SP/MP
+    EXPECT_NEAR(numbers[3].row.sigma, std::hypot(0.05 / 41.4, 0.5 / 139), 1e-9); // each may have been rounded
+    EXPECT_NEAR(numbers[6].row.published(), 11.9, 0.05);                         // us per batch
+    for (const auto& number : numbers) EXPECT_NEAR(number.row.log_error(), 0, 1e-12);
+    EXPECT_EQ(numbers[0].row.status, RowStatus::calibrated);
+    EXPECT_EQ(numbers[1].row.status, RowStatus::predicted);
+    EXPECT_EQ(numbers[2].row.status, RowStatus::calibrated); // flush_quad_px_per_clk was chosen with it in view
+    for (std::size_t i = 3; i < numbers.size(); ++i) EXPECT_EQ(numbers[i].row.status, RowStatus::derived);
 }
 
-TEST(PeelingTable, EveryNoteBelongsToANumberAndMostNumbersArePredicted) {
+namespace {
+
+/// Every number of the table as the model would have it that is right about everything.
+std::vector<reports::PeelingNumber> table_as_published() {
+    std::vector<reports::PeelingNumber> numbers;
+    for (const auto& row : published().rows) {
+        const auto& data = published().dataset(row.dataset);
+        for (auto& number : reports::peeling_numbers(
+                 published(), row,
+                 {{data.triangles, {1e3 / row.fps[0].value, 1e3 / row.fps[1].value, 1e3 / row.fps[2].value}, 0}}))
+            numbers.push_back(std::move(number));
+    }
+    return numbers;
+}
+
+} // namespace
+
+TEST(PeelingTable, PHY_P7_EveryPrintedNumberCountsAtMostOnceAndNoneThatWasInView) {
+    auto numbers = table_as_published();
+    const auto summary = reports::summarise_peeling(numbers);
+    std::set<std::string> predicted;
+    for (const auto& number : numbers)
+        if (number.row.status == RowStatus::predicted) predicted.insert(number.row.row);
+    EXPECT_EQ(predicted, (std::set<std::string>{"Dragon, 4 RGBZ, SP", "Dragon, 16 Z, MP", "Powerplant, 4 RGBZ, MP",
+                                                "Powerplant, 16 Z, MP", "Lucy, 4 RGBZ, MP", "Lucy, 16 Z, MP"}));
+    EXPECT_EQ(summary.predicted.rows, 6U);
+    EXPECT_EQ(summary.sharp.rows, 4U); // Lucy's MP have one digit
+    EXPECT_NEAR(summary.predicted.rms, 0, 1e-12);
+    ASSERT_TRUE(summary.predicted.skill());
+    EXPECT_NEAR(*summary.predicted.skill(), 1, 1e-12);
+}
+
+// The numbers are those that the null model gives by hand: MP 4 RGBZ of Dragon, SP of the other two.
+TEST(PeelingTable, PHY_P7_TheNullModelHasOneNumberAMesh) {
+    auto numbers = table_as_published();
+    const auto summary = reports::summarise_peeling(numbers);
+    std::map<std::string, double> null;
+    for (const auto& number : numbers) null[number.row.row] = number.row.null_model;
+    EXPECT_NEAR(null["Dragon, 4 RGBZ, SP"], 4 * 41.4, 1e-9);
+    EXPECT_NEAR(null["Dragon, 16 Z, MP"], 41.4 / 4, 1e-9);
+    EXPECT_NEAR(null["Powerplant, 16 Z, MP"], 20.1 / 16, 1e-9);
+    EXPECT_NEAR(null["Lucy, 4 RGBZ, MP"], 1.7 / 4, 1e-9);
+    EXPECT_NEAR(null["Dragon, 4 RGBZ, SPwH"], 1e6 / 12.6 / 27219, 1e-6);
+    EXPECT_EQ(null["Dragon, 4 RGBZ, SP/MP"], 0);
+    EXPECT_NEAR(*summary.predicted.null_rms, 0.081, 0.002);
+}
+
+TEST(PeelingTable, EveryNoteAndChoiceBelongsToANumber) {
     EXPECT_EQ(published().rows.size(), 6U);
     EXPECT_EQ(published().calibrated.size(), 2U);
-    for (const auto* notes : {&published().calibrated, &published().explanations})
-        for (const auto& note : *notes)
-            EXPECT_TRUE(std::any_of(published().rows.begin(), published().rows.end(), [&](const auto& row) {
-                return row.dataset == note.dataset && row.buffer == note.buffer;
-            }));
+    for (const auto& step : published().calibrated) EXPECT_NO_THROW(published().row(step.dataset, step.buffer));
+    for (const auto* notes : {&published().repeats, &published().explanations})
+        for (const auto& note : *notes) EXPECT_NO_THROW(published().row(note.dataset, note.buffer));
+    for (const auto& note : published().repeats) // the same as printed
+        EXPECT_EQ(published().row(note.dataset, note.buffer).fps[1].value,
+                  published().row(note.dataset, "4 RGBZ").fps[1].value);
+    std::set<std::string> names;
+    for (const auto& number : table_as_published()) names.insert(number.row.key());
+    EXPECT_EQ(names.size(), 42U);
+    EXPECT_GE(published().choices.size(), 3U);
+    for (const auto& one : published().choices)
+        for (const std::string& row : one.rows) EXPECT_TRUE(names.contains(row)) << row;
+}
+
+TEST(PeelingTable, PHY_P7_ConstantsThatWereChosenWithNumbersInViewAreStillThose) {
+    sim::Config config = models::load_gpu(published().gpu);
+    pipeline::GpuParams gpu;
+    config.read("", gpu);
+    const auto design = models::make_design(reports::design_of(PeelingColumn::spwh), config);
+    const nlohmann::ordered_json& effective = config.effective();
+    for (const auto& one : published().choices) {
+        if (one.parameter.empty()) continue;
+        std::string pointer = "/" + one.parameter;
+        std::replace(pointer.begin(), pointer.end(), '.', '/');
+        EXPECT_EQ(effective.at(nlohmann::ordered_json::json_pointer(pointer)).get<double>(), one.value) << one.what;
+    }
 }
 
 TEST(PeelingTable, StandInsKeepTheSizeOfTheirTriangles) {
@@ -184,3 +246,5 @@ TEST(PeelingTable, StandInsKeepTheSizeOfTheirTriangles) {
     };
     EXPECT_NEAR(fragments(20'000) / fragments(60'000), 1, 0.05);
 }
+
+} // namespace peeling_test

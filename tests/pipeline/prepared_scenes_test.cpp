@@ -6,7 +6,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-namespace {
+namespace prepared_scenes_test {
 
 using support::Replay;
 using traces::Scene;
@@ -73,4 +73,4 @@ TEST(PreparedScenes, MachineShadesAndFetchesWhatWasMeasured) {
     }
 }
 
-} // namespace
+} // namespace prepared_scenes_test

@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 #include <map>
 
-namespace {
+namespace samples_test {
 
 using pipeline::RunResult;
 using support::counter;
@@ -45,8 +45,6 @@ bool works_per_sample(const std::string& design) {
 
 std::uint64_t shaded_quads(const RunResult& run) { return counter(run.stages, "fragment_pipeline/counters/quads"); }
 
-} // namespace
-
 TEST(Sampled, K3_ProtectedDesignsGiveTheReferenceAtEverySample) {
     for (const std::uint32_t samples : {4U, 8U})
         for (const std::string& scene : scenes) {
@@ -69,12 +67,12 @@ TEST(Sampled, K3_ForTheOptionsOfProtectedDesigns) {
                                                                    {"scoreboard", "scoreboard.granularity=pixel"},
                                                                    {"scoreboard", "scoreboard.entries=17"},
                                                                    {"blender", "blender.interlock=forward"},
-                                                                   {"blender", "rop.cache_tiles=1"},
-                                                                   {"multipass", "rop.cache_tiles=1"},
+                                                                   {"blender", "rop.kbuffer_cache_bytes=1024"},
+                                                                   {"multipass", "rop.depth_cache_bytes=256"},
                                                                    {"peel-rop", "peel-rop.early_reject=pixel"},
                                                                    {"interlock", "interlock.area=tile"},
                                                                    {"hashed", "hashed.counters=2"},
-                                                                   {"blender", "memory.partitions=3"}};
+                                                                   {"blender", "rop.units=12"}};
     for (const auto& [design, setting] : options) {
         SCOPED_TRACE(design + " " + setting);
         const RunResult run = replay.run(design, {setting});
@@ -238,10 +236,12 @@ TEST(Sampled, HardwareGrowsWithTheSamplesWhereItKnowsEveryOne) {
     const auto area = [](const Replay& replay, const char* design, const char* what) {
         return counter(replay.run(design).area, what);
     };
-    EXPECT_EQ(area(four, "scoreboard", "scoreboard_bits"), 4 * area(one, "scoreboard", "scoreboard_bits"));
-    EXPECT_EQ(area(four, "peel-rop", "early_reject_bits_of_the_gpu"),
-              4 * area(one, "peel-rop", "early_reject_bits_of_the_gpu"));
-    EXPECT_EQ(area(four, "blender", "added_state_bits"), area(one, "blender", "added_state_bits"));
-    EXPECT_GT(area(four, "framebuffer-fetch", "added_state_bits"),
-              3 * area(one, "framebuffer-fetch", "added_state_bits"));
+    EXPECT_EQ(area(four, "scoreboard", "added/scoreboard"), 4 * area(one, "scoreboard", "added/scoreboard"));
+    EXPECT_EQ(area(four, "peel-rop", "added/early_reject_bounds"),
+              4 * area(one, "peel-rop", "added/early_reject_bounds"));
+    EXPECT_EQ(area(four, "blender", "added_bytes"), area(one, "blender", "added_bytes"));
+    EXPECT_EQ(area(four, "framebuffer-fetch", "added/tile_memory"),
+              4 * area(one, "framebuffer-fetch", "added/tile_memory"));
 }
+
+} // namespace samples_test

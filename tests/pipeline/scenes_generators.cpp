@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace {
+namespace scenes_generators_test {
 
 using pipeline::FragmentStream;
 using pipeline::Quad;
@@ -144,4 +144,4 @@ TEST(SceneGenerators, SoupHasManyLayers) {
     EXPECT_GT(*std::max_element(counts.begin(), counts.end()), 8U);
 }
 
-} // namespace
+} // namespace scenes_generators_test

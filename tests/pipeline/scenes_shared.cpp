@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-namespace {
+namespace scenes_shared_test {
 
 using nlohmann::json;
 
@@ -124,4 +124,4 @@ TEST(SharedScenes, LeaveOutWhatTheyDoNotNeed) {
               (Units{"vertex colours", "early depth test", "k-buffer"}));
 }
 
-} // namespace
+} // namespace scenes_shared_test

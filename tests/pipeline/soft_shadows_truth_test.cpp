@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace {
+namespace soft_shadows_truth_test {
 
 using reports::AccuracyPoint;
 using reports::AccuracyRequest;
@@ -118,4 +118,4 @@ TEST(SoftShadowsS6Long, ErrorOfRealScenesFallsFromOneLayerToThree) {
     }
 }
 
-} // namespace
+} // namespace soft_shadows_truth_test

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-namespace {
+namespace study_designs_test {
 
 constexpr const char* head = "title = \"t\"\nquestion = \"q\"\nx = \"triangles\"\nsize = \"64x48\"\n";
 constexpr const char* points = "points = [ { x = 400 }, { x = 3000 } ]\n";
@@ -57,7 +57,21 @@ reports::Comparison compared(const std::string& design, const std::vector<std::s
     return reports::compare(reports::prepare(request));
 }
 
-} // namespace
+TEST(StudyOfDesigns, ASeriesMayNameADesignWithSettings) {
+    const auto series_of = [](const std::string& design, const std::string& settings) {
+        return std::string(head) + "points = [ { x = 400 } ]\nmeasure = \"hazards.concurrency_per_million\"\n" +
+               "[[series]]\nname = \"s\"\nscene = \"gen:blob?triangles={x}\"\ndesign = \"" + design +
+               "\"\nsettings = [" + settings + "]\n";
+    };
+    const auto variant = run(study_of(series_of("existing?visibility=rop_cache&fragment.pipes=2", "")));
+    const auto set = run(study_of(series_of("existing", "\"existing.visibility=rop_cache\", \"fragment.pipes=2\"")));
+    EXPECT_EQ(variant.values.at(0).measure, set.values.at(0).measure);
+    EXPECT_GT(set.values.at(0).measure, 0.0);
+    EXPECT_NE(mistake(series_of("exsting?visibility=rop_cache", "")).find("did you mean 'existing'?"),
+              std::string::npos);
+    EXPECT_NE(mistake(series_of("existing?visibilty=rop_cache", "")).find("did you mean 'existing.visibility'?"),
+              std::string::npos);
+}
 
 TEST(StudyOfDesigns, NumbersAreThoseOfTheComparisons) {
     const reports::StudyResult result =
@@ -120,10 +134,10 @@ TEST(StudyOfDesigns, NumberOfThreadsChangesNothing) {
 TEST(StudyOfDesigns, NumberThatSomeRunsLackIsAGap) {
     const reports::StudyResult result =
         run(study_of(std::string(head) + points +
-                     "measures = [ { value = \"area.scoreboard_bits\", optional = true } ]\n" + series));
+                     "measures = [ { value = \"area.added.scoreboard\", optional = true } ]\n" + series));
     EXPECT_TRUE(std::isnan(result.values[0].numbers[0].mean));
     EXPECT_GT(result.values[1].numbers[0].mean, 0.0);
-    EXPECT_EQ(reports::study_json(result).at("values").at(0).at("area.scoreboard_bits").dump(), "null");
+    EXPECT_EQ(reports::study_json(result).at("values").at(0).at("area.added.scoreboard").dump(), "null");
     EXPECT_EQ(reports::study_table(result).rows[0][3], "");
 }
 
@@ -171,3 +185,5 @@ TEST(StudyOfDesigns, EveryStudyOnHandHasAnAnswerOnRecord) {
     }
     EXPECT_GE(seen, 16U);
 }
+
+} // namespace study_designs_test

@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-namespace {
+namespace truth_test {
 
 using reports::Truth;
 using reports::TruthError;
@@ -221,4 +221,4 @@ TEST_F(TruthTest, SharedScenesEqualTheirFrames) {
     if (compared == 0) GTEST_SKIP() << "no further scenes here: set ROPSIM_SHARED_DIR";
 }
 
-} // namespace
+} // namespace truth_test

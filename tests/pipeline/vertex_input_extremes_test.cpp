@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <set>
 
-namespace {
+namespace vertex_input_extremes_test {
 
 using pipeline::Geometry;
 using pipeline::IndexType;
@@ -84,8 +84,6 @@ void expect_same_fragments(const Replay& a, const Replay& b) {
 }
 
 const std::vector<std::uint32_t> strip_as_list{0, 1, 2, 1, 3, 2, 2, 3, 4, 6, 7, 8, 7, 9, 8};
-
-} // namespace
 
 TEST(VertexInputExtremes, OneTriangleWithIndicesOfEveryWidth) {
     const Replay wide = replay_of({{{0, 1, 2}}});
@@ -204,3 +202,5 @@ TEST(VertexInputExtremes, UnalignedAttributesFetchTheLinesOfTheirAddresses) {
         EXPECT_EQ(counter(run.stages, "vertex_fetch/counters/bytes"), line * lines.size()) << align;
     }
 }
+
+} // namespace vertex_input_extremes_test

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-namespace {
+namespace workload_csg_test {
 
 using support::Interval;
 using support::Replay;
@@ -135,4 +135,4 @@ TEST(Csg, PixelsWithMoreFragmentsThanKLoseThoseBehind) {
     for (const float value : replay.reference.picture) EXPECT_EQ(value, 1.0F);
 }
 
-} // namespace
+} // namespace workload_csg_test

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
-namespace {
+namespace workload_depth_of_field_test {
 
 using support::Replay;
 
@@ -123,4 +123,4 @@ TEST(DepthOfField, ImpossibleLensesAndRangesAreRefused) {
     EXPECT_EQ(error_of({}), "");
 }
 
-} // namespace
+} // namespace workload_depth_of_field_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-namespace {
+namespace workload_designs_test {
 
 using support::Replay;
 
@@ -88,4 +88,4 @@ TEST(WorkloadDesigns, PixelsWithMoreFragmentsThanKAreCountedAndSaid) {
     EXPECT_EQ(none.out.find("more than k"), std::string::npos) << none.out;
 }
 
-} // namespace
+} // namespace workload_designs_test

@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-namespace {
+namespace workload_fields_test {
 
 using support::Interval;
 using support::PixelRay;
@@ -238,4 +238,4 @@ TEST(Particles, ShowTheIsosurfaceOfTheirScalar) {
     EXPECT_NEAR(sum / static_cast<double>(hits), 4.5, 0.1);
 }
 
-} // namespace
+} // namespace workload_fields_test

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-namespace {
+namespace workload_soft_shadows_test {
 
 using support::counter;
 using support::Replay;
@@ -170,4 +170,4 @@ TEST(SoftShadows, ExtremesGiveNumbers) {
     EXPECT_EQ(shadows({"map_size=1"}, 8, 8).run("blender").wrong_pixels, 0U);
 }
 
-} // namespace
+} // namespace workload_soft_shadows_test

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-namespace {
+namespace workload_translucency_test {
 
 using support::Interval;
 using support::PixelRay;
@@ -145,4 +145,4 @@ TEST(Translucency, AskedForTheWrongNumberOfExtinctionsSaysSo) {
     }
 }
 
-} // namespace
+} // namespace workload_translucency_test

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "pipeline/geometry/index_fetch.hpp"
+#include "tests/support/counting.hpp"
 #include "tests/support/geometry_scene.hpp"
 #include "tests/support/sim_kit.hpp"
 
@@ -24,12 +25,6 @@ inline std::vector<pipeline::DrawCommand> commands(const GeometryScene& scene) {
     return list;
 }
 
-inline std::vector<std::uint32_t> counting(std::uint32_t count) {
-    std::vector<std::uint32_t> list(count);
-    for (std::uint32_t i = 0; i < count; ++i) list[i] = i;
-    return list;
-}
-
 /// What came of fetching the primitives of all draws of a scene.
 struct FetchRun {
     std::vector<pipeline::IndexedPrimitive> primitives;
@@ -39,11 +34,12 @@ struct FetchRun {
 };
 
 inline FetchRun fetch(const GeometryScene& scene, const pipeline::IndexFetchParams& params,
-                      SinkOptions sink_options = {}, sim::Mode mode = sim::Mode::normal, std::uint64_t shuffle = 1) {
+                      SinkOptions sink_options = {}, sim::Mode mode = sim::Mode::normal, std::uint64_t shuffle = 1,
+                      sim::Cycle latency = memory_latency) {
     const pipeline::GeometryPass pass = pass_of(scene);
     Rig rig(mode, 1, shuffle);
     pipeline::IndexFetch stage(rig.context("fetch"), params, pass);
-    Responder<pipeline::MemoryRequest, pipeline::MemoryResponse> memory(rig.context("memory"), memory_latency, answer);
+    Responder<pipeline::MemoryRequest, pipeline::MemoryResponse> memory(rig.context("memory"), latency, answer);
     Source<pipeline::DrawCommand> source(rig.context("source"), commands(scene));
     Sink<pipeline::IndexedPrimitive> sink(rig.context("sink"), std::move(sink_options));
     sim::connect(source.out, stage.draws_in, {});

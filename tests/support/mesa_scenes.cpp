@@ -112,7 +112,7 @@ class PositionReader {
 };
 
 template <class Element>
-pipeline::Buffer buffer_of(const std::vector<Element>& elements) {
+pipeline::Buffer buffer_with(const std::vector<Element>& elements) {
     pipeline::Buffer buffer;
     const auto bytes = std::as_bytes(std::span(elements));
     buffer.bytes.assign(bytes.begin(), bytes.end());
@@ -187,7 +187,7 @@ std::optional<TriangleScene> mesh_scene(const std::filesystem::path& relative) {
 
 PipelineScene pipeline_scene(const TriangleScene& scene, bool double_sided) {
     PipelineScene result;
-    result.resources.buffers = {buffer_of(scene.positions), buffer_of(scene.indices)};
+    result.resources.buffers = {buffer_with(scene.positions), buffer_with(scene.indices)};
     pipeline::Geometry geometry;
     geometry.attributes = {pipeline::VertexAttribute{}};
     geometry.vertex_count = static_cast<std::uint32_t>(scene.positions.size());

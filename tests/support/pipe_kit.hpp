@@ -67,7 +67,7 @@ class MockKBuffer final : public sim::Component {
         const std::array<float, 4> four{value, value, value, value};
         for (std::uint32_t target = 0; target < 64; ++target)
             for (std::uint32_t pixel = 0; (read.targets >> target & 1) != 0 && pixel < 4; ++pixel)
-                payloads_->sample(read.slot, pixel, target, four.data(), {version, version}, cycle());
+                payloads_->sample(read.slot, pixel, target, four.data(), {version, version}, {0, cycle()});
     }
 
     pipeline::QuadPayloads* payloads_;

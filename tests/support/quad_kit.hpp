@@ -11,6 +11,7 @@
 #include "pipeline/fragment/pass_context.hpp"
 #include "pipeline/geometry/messages.hpp"
 #include "pipeline/memory/messages.hpp"
+#include "tests/support/counting.hpp"
 
 #include <bit>
 #include <cstdint>
@@ -102,13 +103,6 @@ std::vector<pipeline::QuadId> quads_of(const std::vector<Message>& messages) {
     std::vector<pipeline::QuadId> quads;
     for (const Message& message : messages) quads.push_back(message.quad);
     return quads;
-}
-
-/// 0, 1, ... count - 1.
-inline std::vector<std::uint32_t> counting(std::size_t count) {
-    std::vector<std::uint32_t> numbers(count);
-    for (std::size_t i = 0; i < count; ++i) numbers[i] = static_cast<std::uint32_t>(i);
-    return numbers;
 }
 
 } // namespace tests

@@ -1,4 +1,4 @@
-// A ROP partition between a source of quads, a source of k-buffer reads, a sink of commits and a mock memory.
+// A ROP group between a source of quads, a source of k-buffer reads, a sink of commits and a mock memory.
 //
 //     tests::QuadPass pass;
 //     pass.context.end = pipeline::FragmentEnd::kbuffer_store;
@@ -19,7 +19,8 @@
 
 namespace tests {
 
-/// Answers reads, in order, a fixed time after they came; writes are posted. Notes what came when.
+/// Reads the array, in order, a fixed time after a request came; the data are there `way_back` later. Writes are posted
+/// but for those that ask for an answer. Notes what came when.
 class MockMemory final : public sim::Component {
   public:
     struct Arrival {
@@ -30,17 +31,20 @@ class MockMemory final : public sim::Component {
     sim::Out<pipeline::MemoryResponse> responses_out{*this, "responses_out"};
     std::vector<Arrival> arrivals;
 
-    MockMemory(sim::Context context, sim::Cycle latency) : Component(std::move(context)), latency_(latency) {}
+    MockMemory(sim::Context context, sim::Cycle latency, std::uint32_t way_back)
+        : Component(std::move(context)), latency_(latency), way_back_(way_back) {}
 
   private:
     sim::Activity tick() override {
         bool moved = false;
         for (; requests_in.peek() != nullptr; moved = true) {
             arrivals.push_back({requests_in.receive(), cycle()});
-            if (!arrivals.back().request.write) due_.push_back({cycle() + latency_, arrivals.back().request.tag});
+            const pipeline::MemoryRequest& request = arrivals.back().request;
+            if (!request.write || request.notify)
+                due_.push_back({cycle() + latency_, {request.tag, request.write ? 0 : way_back_}});
         }
         for (; !due_.empty() && due_.front().first <= cycle() && responses_out.ready(); moved = true) {
-            responses_out.send({due_.front().second});
+            responses_out.send(due_.front().second);
             due_.pop_front();
         }
         if (moved) return sim::Activity::busy;
@@ -51,14 +55,16 @@ class MockMemory final : public sim::Component {
     }
 
     sim::Cycle latency_;
-    std::deque<std::pair<sim::Cycle, std::uint32_t>> due_;
+    std::uint32_t way_back_;
+    std::deque<std::pair<sim::Cycle, pipeline::MemoryResponse>> due_;
 };
 
 struct RopOptions {
     pipeline::RopParams rop = {};
     std::optional<pipeline::ShaderSite> shader = {};   ///< of passes that end in kbuffer_store
     std::optional<pipeline::BlenderSite> blender = {}; ///< of passes that end in kbuffer_blend
-    sim::Cycle memory_latency = 100;                   ///< inside the mock memory
+    sim::Cycle memory_latency = 100;                   ///< inside the mock memory, until the array is read
+    std::uint32_t memory_way_back = 0;                 ///< cycles of the data from there
     std::vector<std::uint32_t> reads = {};             ///< blocks that a texture unit reads, in order; with a shader
     SourceOptions reads_source = {};
     SourceOptions source = {};
@@ -75,6 +81,7 @@ class RopBench {
     const QuadPass& pass;
     pipeline::KBufferPlan plan;
     pipeline::FixedSurfaces fixed;
+    pipeline::ClearBits kbuffer_clear;
     pipeline::KBufferMemory kbuffer;
     pipeline::StoreHistory history;
     pipeline::QuadPayloads payloads;
@@ -97,15 +104,16 @@ class RopBench {
                   options.shader && options.shader->visibility != pipeline::Visibility::rop_cache),
           history(pass.context.layout),
           payloads(slots, pass.program().floats_per_pixel()),
-          rop(rig.context("rop"), options.rop, pass.context, plan, surfaces(options), shape(options)),
+          rop(rig.context("rop"), options.rop, pass.context, plan, surfaces(options), shape()),
           source(rig.context("source"), prepared(tasks ? *tasks : pass.quad_tasks(), options), options.source),
-          memory(rig.context("memory"), options.memory_latency) {
+          memory(rig.context("memory"), options.memory_latency, options.memory_way_back) {
         const std::size_t pixels = std::size_t{pass.stream.width} * pass.stream.height;
         fixed.depth.assign(pixels, pipeline::farthest_depth(pass.context.depth_format));
         fixed.winner.assign(pixels, ~pipeline::QuadId{0});
+        rop.begin_pass();
         sim::connect(source.out, rop.quads_in, {1, 1, 2});
-        sim::connect(rop.memory_out, memory.requests_in, {1, 1, 64});
-        sim::connect(memory.responses_out, rop.memory_in, {1, 1, 64});
+        sim::connect(rop.memory_out[0], memory.requests_in, {1, 1, 64});
+        sim::connect(memory.responses_out, rop.memory_in[0], {1, 1, 64});
         if (options.shader || options.blender)
             sim::connect(rop.commits_out, commits.emplace(rig.context("commits"), options.commits).in, {1, 2, 4});
         if (!rop.invalidations_out.empty())
@@ -133,18 +141,19 @@ class RopBench {
     sim::Cycle read_at(std::uint32_t read) { return payloads[slots - 1 - read].last_read; }
     float stored(std::uint32_t block, std::uint32_t float_ = 0) { return kbuffer.latest(block, 0)[float_]; }
 
-    /// Cycles at which requests of a client came to memory, and the tiles of these requests.
+    /// Cycles at which requests of a client came to memory, and the lines of these requests, where each asks for a
+    /// whole one.
     std::vector<sim::Cycle> request_cycles(pipeline::MemoryClient client) const {
         std::vector<sim::Cycle> cycles;
         for (const auto& [request, cycle] : memory.arrivals)
             if (request.client == client) cycles.push_back(cycle);
         return cycles;
     }
-    std::vector<std::uint64_t> requested_tiles(pipeline::MemoryClient client) const {
-        std::vector<std::uint64_t> tiles;
+    std::vector<std::uint64_t> requested_lines(pipeline::MemoryClient client) const {
+        std::vector<std::uint64_t> lines;
         for (const auto& [request, cycle] : memory.arrivals)
-            if (request.client == client) tiles.push_back((request.address & surface_mask) / request.bytes);
-        return tiles;
+            if (request.client == client) lines.push_back((request.address & surface_mask) / request.bytes);
+        return lines;
     }
 
   private:
@@ -160,16 +169,14 @@ class RopBench {
         return plan;
     }
     pipeline::RopSurfaces surfaces(const RopOptions& options) {
-        return {&fixed, options.shader || options.blender ? &kbuffer : nullptr, &history,
-                options.shader ? &payloads : nullptr};
+        return {&fixed,   options.shader || options.blender ? &kbuffer : nullptr,
+                &history, options.shader ? &payloads : nullptr,
+                nullptr,  &kbuffer_clear};
     }
-    pipeline::RopShape shape(const RopOptions& options) const {
-        return {1,
-                pass.context.layout.tiles(),
-                pass.context.shader_costs.size(),
-                true,
-                true,
-                options.shader || options.blender ? options.rop.cache_tiles : 0};
+    pipeline::RopShape shape() const {
+        return {1,         pass.context.shader_costs.size(), true, true, 1,
+                1U << 20U, // no request is cut
+                0};
     }
 
     std::vector<pipeline::QuadTask> prepared(std::vector<pipeline::QuadTask> tasks, const RopOptions& options) {

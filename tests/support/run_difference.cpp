@@ -12,12 +12,11 @@ namespace {
 using pipeline::RunResult;
 
 auto key(const pipeline::HazardPair& pair) {
-    return std::tuple(pair.x, pair.y, pair.kind, pair.victim, pair.aggressor, pair.missing, pair.read, pair.write);
+    return std::tuple(pair.x, pair.y, pair.cause, pair.kind, pair.victim, pair.aggressor, pair.missing, pair.read,
+                      pair.write);
 }
 
-auto key(const pipeline::HazardCounts& counts) {
-    return std::tuple(counts.h1, counts.h2, counts.h3, counts.h4, counts.pixels);
-}
+auto key(const pipeline::HazardCounts& counts) { return std::tuple(counts.by, counts.pixels); }
 
 class Comparison {
   public:

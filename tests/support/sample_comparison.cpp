@@ -4,6 +4,8 @@
 
 namespace ropsim_test {
 
+using pipeline::HazardClass;
+using pipeline::HazardKind;
 using pipeline::RunResult;
 
 namespace {
@@ -87,7 +89,14 @@ RunResult common_run(const std::string& design) {
     run.stalls = {{"rasterizer", {{"idle", 0.1}, {"busy", 0.7}, {"memory", 0.2}}}};
     run.caches = {{"texture_l1", {{"accesses", 10}, {"hits", 8}, {"misses", 2}, {"hit_rate", 0.8}}}};
     run.bytes = {{"dram", {{"bytes", 5120}, {"per_fragment", 128.0}}}};
-    run.area = {{"scoreboard_bits", 64}};
+    run.area = {{"tile_cache_bytes", 65536},
+                {"payload_bytes", 4096},
+                {"added_bytes", 8},
+                {"total_bytes", 69640},
+                {"tile_caches", {{"depth", 0}, {"colour", 0}, {"kbuffer", 65536}}},
+                {"added", {{"scoreboard", 8}}},
+                {"added_comparators", 0},
+                {"added_alu_lanes", 0}};
     run.passes.push_back({"layers, all", 5, 6000, {{"rasterizer", {{"quads", 10}}}}});
     run.draws.push_back({"draw \"a\"", 0, {{"rasterizer", {{"quads", 10}}}}});
     return run;
@@ -95,10 +104,12 @@ RunResult common_run(const std::string& design) {
 
 RunResult racy_run() {
     RunResult run = common_run("racy");
-    run.hazards = {1, 0, 1, 0, 2};
+    run.hazards.at(HazardClass::h1_in_flight, HazardKind::concurrency) = 1;
+    run.hazards.at(HazardClass::h3_stale_line, HazardKind::incoherence) = 1;
+    run.hazards.pixels = 2;
     run.hazard_distance = {0, 1, 0, 1};
-    run.pairs = {{2, 1, pipeline::HazardClass::h1_in_flight, 7, 3, 1, 100, 140},
-                 {5, 2, pipeline::HazardClass::h3_stale_line, 9, 4, 2, 120, 110}};
+    run.pairs = {{2, 1, HazardClass::h1_in_flight, HazardKind::concurrency, 7, 3, 1, 100, 140},
+                 {5, 2, HazardClass::h3_stale_line, HazardKind::incoherence, 9, 4, 2, 120, 110}};
     run.max_staleness = 2;
     run.mean_staleness = 1.5;
     run.lost_updates = run.wrong_pixels = run.lost_fragments = 2;
@@ -134,6 +145,7 @@ reports::Comparison make(bool colours) {
     racy.kbuffer = comparison.pixels[0].kbuffer;
     safe.kbuffer = comparison.pixels[1].kbuffer;
     comparison.runs = {std::move(racy), std::move(safe)};
+    comparison.variants = {{"racy", "racy?bypass_l1=false", "racy bypass_l1=false"}, {"safe", "safe", "safe"}};
     comparison.design_support.assign(
         2, {{"programs", {"nearest-k rgbz"}}, {"antialiasing", "supersampling"}, {"early_reject", false}});
     comparison.design_parameters = {{{"bypass_l1", false}}, {{"entries", 64}}};

@@ -102,8 +102,8 @@ class SchedulerBench {
                             pipeline::SchedulingPlan* plan = nullptr, const pipeline::FlushRule& flush = {},
                             pipeline::QuadPayloads* payloads = nullptr)
         : rig(options.mode, 1, options.shuffle),
-          scheduler(rig.context("scheduler"), options.pipes, 1, pass.context, plan != nullptr ? *plan : no_plan, flush,
-                    payloads),
+          scheduler(rig.context("scheduler"), {}, options.pipes, 1, pass.context, plan != nullptr ? *plan : no_plan,
+                    flush, payloads),
           source(rig.context("source"), pass.quad_tasks()),
           back_end(rig.context("back_end"), options) {
         scheduler.begin_pass();

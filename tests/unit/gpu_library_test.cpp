@@ -1,6 +1,7 @@
 // The GPU files: every number has an origin, every key is known, nothing is left out.
 #include "models/gpu_library.hpp"
 #include "pipeline/gpu_params.hpp"
+#include "pipeline/memory/memory_system.hpp"
 #include "tests/support/paths.hpp"
 
 #include <algorithm>

@@ -5,7 +5,7 @@
 #include <list>
 #include <rapidcheck/gtest.h>
 
-namespace {
+namespace memory_cache_test {
 
 using pipeline::Cache;
 using pipeline::CacheAccess;
@@ -136,4 +136,4 @@ TEST(Cache, ShapesThatDoNotFitAreInputErrorsThatNameTheKey) {
     EXPECT_EQ(message({.bytes = 96, .line = 32, .ways = 1}), "none"); // three sets are fine
 }
 
-} // namespace
+} // namespace memory_cache_test

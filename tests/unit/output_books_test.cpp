@@ -1,33 +1,40 @@
 // The books of the output stage: layout of surfaces, tile tags, versions of pixels, classes of hazards.
 #include "models/programs/library.hpp"
 #include "pipeline/image_difference.hpp"
+#include "pipeline/output/clear_bits.hpp"
 #include "pipeline/output/hazard_ledger.hpp"
 #include "pipeline/output/kbuffer_memory.hpp"
 #include "pipeline/output/programmable_blender.hpp"
 #include "pipeline/output/tile_cache.hpp"
 #include "sim/check.hpp"
 
+#include <algorithm>
+#include <bit>
 #include <gtest/gtest.h>
 #include <set>
 
-namespace {
+namespace output_books_test {
 
 using namespace pipeline;
 
+using HazardTable = decltype(HazardCounts::by);
+
 constexpr SurfaceLayout layout{10, 7, 4}; // odd sizes: the last tiles hang over the edge
 
-/// A ledger whose pixel 0 of block 0 was stored by quad 5: retired at 100, stored at 110, visible from 120 on.
+/// A ledger whose pixel 0 of block 0 was stored by quad 5: retired at 100, coherent reads see it from 110 on, others
+/// from 120 on.
 struct LedgerTest : testing::Test {
     StoreHistory history{layout};
     HazardLedger ledger{layout, history};
-    void SetUp() override { ledger.enter(0, 0, 5, 100, 110, 120); }
-    HazardCounts book(std::uint32_t oldest, std::uint32_t newest, sim::Cycle read) {
-        ledger.book(0, 0, 9, {3, oldest, newest, read});
+    void SetUp() override {
+        for (const std::uint32_t quad : {3U, 4U}) ledger.enter(0, 0, quad, 50, 60, 70);
+        ledger.enter(0, 0, 5, 100, 110, 120);
+    }
+    HazardCounts book(std::uint32_t oldest, std::uint32_t newest, sim::Cycle read, sim::Cycle fill = 0) {
+        ledger.book(0, 0, 9, {3, oldest, newest, read, fill}, 1'000'001);
         return ledger.counts();
     }
 };
-
-} // namespace
 
 TEST(SurfaceLayoutTest, EveryPixelHasABlockOfItsOwnAndItsWayBack) {
     std::set<std::pair<std::uint32_t, std::uint32_t>> seen;
@@ -56,31 +63,57 @@ TEST(SurfaceLayoutTest, NeighbouringTilesLieInDifferentPartitions) {
 TEST_F(LedgerTest, AReadOfAllPredecessorsIsNoHazard) { EXPECT_EQ(book(3, 3, 0).total(), 0U); }
 
 TEST_F(LedgerTest, H1UntilThePredecessorRetires) {
-    EXPECT_EQ(book(2, 2, 99).h1, 1U);
-    EXPECT_EQ(book(2, 2, 100).h1, 1U);
+    EXPECT_EQ(book(2, 2, 99).of(HazardClass::h1_in_flight), 1U);
+    EXPECT_EQ(book(2, 2, 100).of(HazardClass::h1_in_flight), 1U);
 }
 
 TEST_F(LedgerTest, H2FromRetirementUntilTheStoreIsVisible) {
-    EXPECT_EQ(book(2, 2, 100).h2, 1U);
-    EXPECT_EQ(book(2, 2, 119).h2, 2U);
-    EXPECT_EQ(book(2, 2, 120).h2, 2U);
+    EXPECT_EQ(book(2, 2, 100).of(HazardClass::h2_write_path), 1U);
+    EXPECT_EQ(book(2, 2, 119).of(HazardClass::h2_write_path), 2U);
+    EXPECT_EQ(book(2, 2, 120).of(HazardClass::h2_write_path), 2U);
 }
 
 TEST_F(LedgerTest, H3OnceItWasVisible) {
-    EXPECT_EQ(book(2, 2, 120).h3, 1U);
-    EXPECT_EQ(book(2, 2, 119).h3, 1U);
+    EXPECT_EQ(book(2, 2, 120).of(HazardClass::h3_stale_line), 1U);
+    EXPECT_EQ(book(2, 2, 119).of(HazardClass::h3_stale_line), 1U);
+}
+
+TEST_F(LedgerTest, ALineFilledAfterTheStoreWasVisibleCannotLackIt) {
+    EXPECT_EQ(book(2, 2, 130, 119).of(HazardClass::h3_stale_line), 1U);
+    EXPECT_THROW(book(2, 2, 130, 120), sim::InternalError);
 }
 
 TEST_F(LedgerTest, H4WhenTheTargetsDifferWhateverTheTime) {
-    EXPECT_EQ(book(1, 3, 50).h4, 1U);
-    EXPECT_EQ(book(2, 3, 500).h4, 2U);
+    EXPECT_EQ(book(1, 3, 50).of(HazardClass::h4_torn_read), 1U);
+    EXPECT_EQ(book(2, 3, 500).of(HazardClass::h4_torn_read), 2U);
+}
+
+// A coherent read at 109 misses the store, one at 110 sees it.
+TEST_F(LedgerTest, ConcurrencyUntilCoherentReadsSeeTheStoreIncoherenceFromThenOn) {
+    EXPECT_EQ(book(2, 2, 109).by, (HazardTable{{{0, 0}, {1, 0}, {0, 0}, {0, 0}}}));
+    EXPECT_EQ(book(2, 2, 110).by, (HazardTable{{{0, 0}, {1, 1}, {0, 0}, {0, 0}}}));
+    EXPECT_EQ(book(2, 2, 99).by, (HazardTable{{{1, 0}, {1, 1}, {0, 0}, {0, 0}}}));
+    EXPECT_EQ(book(2, 2, 120).by, (HazardTable{{{1, 0}, {1, 1}, {0, 1}, {0, 0}}}));
+    EXPECT_EQ(book(1, 3, 109).by, (HazardTable{{{1, 0}, {1, 1}, {0, 1}, {1, 0}}}));
+    const HazardCounts counts = book(1, 3, 110);
+    EXPECT_EQ(counts.by, (HazardTable{{{1, 0}, {1, 1}, {0, 1}, {1, 1}}}));
+    EXPECT_EQ(counts.of(HazardKind::concurrency), 3U);
+    EXPECT_EQ(counts.of(HazardKind::incoherence), 3U);
+    EXPECT_EQ(counts.total(), 6U);
+}
+
+TEST_F(LedgerTest, APredecessorThatHasNotStoredYetIsInFlight) {
+    ledger.book(0, 0, 9, {4, 3, 3, 500, 0}, 600); // three of four predecessors have stored
+    EXPECT_EQ(ledger.counts().by, (HazardTable{{{1, 0}, {0, 0}, {0, 0}, {0, 0}}}));
 }
 
 TEST_F(LedgerTest, NeverVisibleIsTheWritePath) {
     ledger.enter(0, 0, 6, 100, 110, StoreHistory::never);
-    EXPECT_EQ(book(2, 2, 1'000'000).h2, 1U);
-    history.tile_visible(0, 500);
-    EXPECT_EQ(book(2, 2, 500).h3, 1U);
+    EXPECT_EQ(book(2, 2, 1'000'000).of(HazardClass::h2_write_path), 1U);
+    history.make_visible(0, 0, 3, 400); // what memory took held the store before it only
+    EXPECT_EQ(book(2, 2, 500).of(HazardClass::h2_write_path), 2U);
+    history.make_visible(0, 0, 4, 500);
+    EXPECT_EQ(book(2, 2, 500).of(HazardClass::h3_stale_line), 1U);
 }
 
 TEST_F(LedgerTest, ThePairNamesVictimAggressorAndStaleness) {
@@ -97,34 +130,110 @@ TEST_F(LedgerTest, ThePairNamesVictimAggressorAndStaleness) {
     EXPECT_EQ(history.classes(0, 0), 1U << static_cast<unsigned>(HazardClass::h2_write_path));
 }
 
-TEST(TileCacheTest, ReplacesTheLeastRecentlyUsedThatIsNeitherPinnedNorPending) {
-    TileCache cache(3, 16);
-    for (const std::uint32_t tile : {4U, 5U, 6U}) {
+TEST(TileCacheTest, ReplacesTheLeastRecentlyUsedThatNoQuadWaitsFor) {
+    TileCache cache;
+    cache.begin(3, {});
+    for (const std::uint32_t line : {4U, 5U, 6U}) {
         const std::uint32_t entry = cache.victim();
-        cache.allocate(entry, tile, tile == 6);
+        cache.allocate(entry, line, line == 6, 0);
         cache.pin(entry);
-        if (tile != 4) cache.unpin(entry);
+        if (line == 5) cache.unpin(entry);
     }
-    EXPECT_FALSE(cache.resident(6)); // still on its way
-    EXPECT_EQ(cache.tile(cache.victim()), 5U);
-    cache.unpin(cache.find(4));
-    EXPECT_EQ(cache.tile(cache.victim()), 4U);
+    EXPECT_FALSE(cache.holds(6)); // still on its way
+    EXPECT_EQ(cache.line(cache.victim()), 5U);
+    cache.pin(cache.victim());
+    EXPECT_EQ(cache.victim(), TileCache::none);
     cache.filled(cache.find(6));
-    EXPECT_TRUE(cache.resident(6));
+    EXPECT_TRUE(cache.holds(6));
+    for (const std::uint32_t line : {4U, 6U, 5U}) cache.unpin(cache.find(line));
+    EXPECT_EQ(cache.line(cache.victim()), 4U);
+    cache.pin(cache.find(4)); // used again
+    cache.unpin(cache.find(4));
     const std::uint32_t entry = cache.victim();
-    cache.allocate(entry, 9, false);
-    EXPECT_EQ(cache.find(4), TileCache::none);
-    cache.mark_dirty(entry);
-    EXPECT_THROW(cache.allocate(entry, 10, false), sim::InternalError); // a dirty tile must be written back first
+    EXPECT_EQ(cache.line(entry), 6U);
+    cache.allocate(entry, 9, false, 0);
+    EXPECT_EQ(cache.find(6), TileCache::none);
+    EXPECT_EQ(cache.find(9), entry);
+    cache.mark_dirty(entry, 1);
+    EXPECT_THROW(cache.allocate(entry, 10, false, 0), sim::InternalError); // dirty pixels must be written back first
+}
+
+// The same as a plain list of the lines in the order of their last use.
+TEST(TileCacheTest, AgreesWithAListOfTheLastUses) {
+    TileCache cache;
+    cache.begin(37, {});
+    std::vector<std::uint32_t> uses;
+    std::uint32_t random = 1;
+    for (int i = 0; i < 20'000; ++i) {
+        random = random * 1664525 + 1013904223;
+        const std::uint32_t line = random >> 16U & 63U;
+        const auto known = std::find(uses.begin(), uses.end(), line);
+        std::uint32_t entry = cache.find(line);
+        ASSERT_EQ(entry != TileCache::none, known != uses.end());
+        if (known != uses.end()) uses.erase(known);
+        if (uses.size() == 37) {
+            ASSERT_EQ(cache.line(cache.victim()), uses.front());
+            uses.erase(uses.begin());
+        }
+        if (entry == TileCache::none) cache.allocate(entry = cache.victim(), line, false, 0);
+        cache.pin(entry);
+        cache.unpin(entry);
+        uses.push_back(line);
+    }
+}
+
+TEST(TileCacheTest, PixelsAreValidWhenStoredFetchedOrCompleted) {
+    TileCache cache;
+    cache.begin(2, {4}); // a line has two sectors
+    const std::uint32_t entry = cache.victim();
+    cache.allocate(entry, cache.shape().line_of(7), false, 0);
+    cache.mark_dirty(entry, cache.shape().in_line(7, 0b0110));
+    EXPECT_EQ(cache.dirty(entry), 0b0110'0000);
+    EXPECT_FALSE(cache.holds(7));
+    cache.complete(7);
+    EXPECT_TRUE(cache.holds(7));
+    EXPECT_FALSE(cache.holds(6));
+    EXPECT_EQ(cache.dirty(entry), 0b0110'0000); // what was fetched is clean
+    cache.complete(100);                        // not on chip
+    cache.mark_clean(entry, 0b0010'0000);
+    EXPECT_EQ(cache.dirty(entry), 0b0100'0000);
+}
+
+TEST(TileCacheTest, LineIsASectorOrWhatSharesItsBurst) {
+    for (const auto& [pixel, sectors] : {std::pair{2U, 4U}, {4U, 2U}, {8U, 1U}, {16U, 1U}, {64U, 1U}}) {
+        const SectorShape shape{pixel};
+        EXPECT_EQ(shape.sectors(), sectors);
+        EXPECT_EQ(shape.line_bytes(), std::max(32U, 4 * pixel));
+        EXPECT_EQ(shape.line_of(4 * sectors - 1), 3U);
+        EXPECT_EQ(std::popcount(shape.whole_line()), static_cast<int>(4 * sectors));
+    }
 }
 
 TEST(TileCacheTest, OneThatIsLeftOutHoldsNothing) {
-    const TileCache cache(0, 16);
+    TileCache cache;
     EXPECT_EQ(cache.victim(), TileCache::none);
     EXPECT_EQ(cache.find(3), TileCache::none);
+    cache.begin(0, {});
+    EXPECT_EQ(cache.victim(), TileCache::none);
+    EXPECT_FALSE(cache.holds(3));
 }
 
-TEST(KBufferMemoryTest, MemorySeesAStoreOnlyOnceItsTileIsPublished) {
+TEST(ClearBitsTest, CountsTheSectorsOfThePictureUntilTheyAreWritten) {
+    ClearBits bits;
+    EXPECT_FALSE(bits.cleared(0));
+    bits.set(layout);
+    EXPECT_EQ(bits.left(), 5U * 4); // 10x7 pixels
+    EXPECT_TRUE(bits.cleared(3));
+    bits.written(3);
+    bits.written(3);
+    EXPECT_EQ(bits.left(), 19U);
+    EXPECT_FALSE(bits.cleared(3));
+    bits.reset();
+    EXPECT_EQ(bits.left(), 0U);
+    EXPECT_FALSE(bits.cleared(0));
+}
+
+TEST(KBufferMemoryTest, MemorySeesAStoreOnlyOnceItHasTakenTheBlockAsItWasWritten) {
     const auto program = models::make_program("nearest-k", "z", 4);
     KBufferMemory memory(layout, *program, true);
     const float before = *memory.seen(5, 2, false);
@@ -133,9 +242,13 @@ TEST(KBufferMemoryTest, MemorySeesAStoreOnlyOnceItsTileIsPublished) {
     EXPECT_EQ(*memory.seen(5, 2, true), 0.25F);
     EXPECT_EQ(*memory.seen(5, 2, false), before);
     EXPECT_EQ(memory.seen_version(5, 2, false).stores, 0U);
-    memory.publish_tile(0); // another tile
+    std::vector<float> written(memory.latest(5, 0), memory.latest(5, 0) + std::size_t{4} * memory.floats_per_pixel());
+    const std::array<PixelVersion, 4> versions{PixelVersion{}, {}, memory.latest_version(5, 2), {}};
+    *memory.latest(5, 2) = 0.125F;                                    // while the block is on its way
+    memory.publish_block(4, 15, written.data(), versions.data());     // another block
+    memory.publish_block(5, 0b1011, written.data(), versions.data()); // its other pixels
     EXPECT_EQ(*memory.seen(5, 2, false), before);
-    memory.publish_tile(1);
+    memory.publish_block(5, 0b0100, written.data(), versions.data());
     EXPECT_EQ(*memory.seen(5, 2, false), 0.25F);
     EXPECT_EQ(memory.seen_version(5, 2, false).stores, 1U);
 }
@@ -187,3 +300,5 @@ TEST(ProgrammableBlenderTest, AStalledPixelEntersWhenTheOlderResultIsWrittenAndN
     EXPECT_EQ(blender.may_enter(8, 0b0001, 109), 109U); // another quad
     EXPECT_EQ(blender.may_enter(7, 0b0001, 116), 116U);
 }
+
+} // namespace output_books_test

@@ -13,7 +13,7 @@
 #include <gtest/gtest.h>
 #include <vector>
 
-namespace {
+namespace programs_fixed_function_test {
 
 using pipeline::ModifyProgram;
 
@@ -178,4 +178,4 @@ TEST(Mlab, OverflowChangesTheOrderButLosesNothing) {
     EXPECT_EQ(models::make_mlab(4, 0.3F)->cost().operations, 4U * 11 + 7);
 }
 
-} // namespace
+} // namespace programs_fixed_function_test

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace {
+namespace programs_language_errors_test {
 
 std::string error_of(const std::string& text, std::uint32_t k = 0) {
     try {
@@ -233,4 +233,4 @@ TEST(LanguageErrors, FilesThatAreNone) {
     EXPECT_EQ(load_error(large), large + ": expected a program of at most 1048576 bytes");
 }
 
-} // namespace
+} // namespace programs_language_errors_test

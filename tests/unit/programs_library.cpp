@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <gtest/gtest.h>
 
-namespace {
+namespace programs_library_test {
 
 std::string error_of(std::string_view id, std::string_view entry, std::uint32_t k) {
     try {
@@ -66,4 +66,4 @@ TEST(ProgramLibrary, DesignsRefuseWhatTheyCannotRun) {
         EXPECT_EQ(refusals(program), peeling) << program;
 }
 
-} // namespace
+} // namespace programs_library_test

@@ -8,7 +8,7 @@
 #include <rapidcheck/gtest.h>
 #include <vector>
 
-namespace {
+namespace programs_order_and_blend_test {
 
 using pipeline::ModifyProgram;
 
@@ -140,4 +140,4 @@ TEST(OrderAndBlend, StaysFinite) {
     EXPECT_GT(state.rgbt[0], 1e38F);
 }
 
-} // namespace
+} // namespace programs_order_and_blend_test

@@ -7,7 +7,7 @@
 #include <array>
 #include <gtest/gtest.h>
 
-namespace {
+namespace reports_light_visibility_test {
 
 using reports::SquareLight;
 using tests::MeshData;
@@ -175,4 +175,4 @@ TEST_F(LightVisibility, RaysComeAsSquares) {
     EXPECT_EQ(reports::light_parts(30), 5U);
 }
 
-} // namespace
+} // namespace reports_light_visibility_test

@@ -43,6 +43,15 @@ TEST(ReportsResult, StatesHazardsByClassAndPerMillion) {
     EXPECT_EQ(hazards["total"], 2);
     EXPECT_EQ(hazards["pixels"], 2);
     EXPECT_DOUBLE_EQ(hazards["per_million"], 2e6 / 40);
+    EXPECT_EQ(hazards["concurrency"], 1);
+    EXPECT_EQ(hazards["incoherence"], 1);
+    EXPECT_EQ(hazards["h1_concurrency"], 1);
+    EXPECT_EQ(hazards["h3_incoherence"], 1);
+    EXPECT_DOUBLE_EQ(hazards["incoherence_per_million"], 1e6 / 40);
+    int cells = 0;
+    for (const auto& item : hazards.items())
+        if (item.key().find('_') == 2) cells += item.value().get<int>();
+    EXPECT_EQ(cells, hazards["total"]) << "the table adds up to all hazards";
 }
 
 TEST(ReportsResult, FramesPerSecondIsClockOverCycles) {

@@ -1,6 +1,7 @@
 // Tables for people and for spreadsheets, and the page.
 #include "reports/csv.hpp"
 #include "reports/flatten.hpp"
+#include "reports/hazard_text.hpp"
 #include "reports/html/markup.hpp"
 #include "reports/html/page.hpp"
 #include "reports/numbers.hpp"
@@ -59,7 +60,13 @@ TEST(ReportsText, CsvHasOneRowPerDesignWithAllNumbers) {
     const auto table = reports::designs_table(sample_comparison());
     ASSERT_EQ(table.rows.size(), 2U);
     EXPECT_EQ(cell(table, 0, "design"), "racy");
+    EXPECT_EQ(cell(table, 0, "variant"), "racy?bypass_l1=false");
     EXPECT_EQ(cell(table, 0, "h3 [fragments]"), "1");
+    EXPECT_EQ(cell(table, 0, "h3_incoherence [fragments]"), "1");
+    EXPECT_EQ(cell(table, 0, "h3_concurrency [fragments]"), "0");
+    EXPECT_EQ(cell(table, 0, "concurrency [fragments]"), "1");
+    EXPECT_EQ(cell(table, 0, "concurrency per million [1e-6]"), "25000");
+    EXPECT_EQ(cell(table, 0, "area.total_bytes"), "69640");
     EXPECT_EQ(cell(table, 1, "time [ms]"), "0.02");
     EXPECT_EQ(cell(table, 0, "layer1.missing"), "2");
     EXPECT_EQ(cell(table, 0, "caches.texture_l1.hit_rate"), "0.8");
@@ -78,10 +85,12 @@ TEST(ReportsText, CsvQuotesWhatNeedsIt) {
 
 TEST(ReportsText, CsvNamesBothFragmentsOfAHazardAndHowManyThereAre) {
     auto comparison = sample_comparison();
-    comparison.runs[0].hazards.h1 = 50;
+    comparison.runs[0].hazards.at(pipeline::HazardClass::h1_in_flight, pipeline::HazardKind::concurrency) = 50;
     const auto table = reports::hazard_pairs_table(comparison);
     ASSERT_EQ(table.rows.size(), 2U);
+    EXPECT_EQ(cell(table, 0, "kind"), "concurrency");
     EXPECT_EQ(cell(table, 1, "class"), "h3");
+    EXPECT_EQ(cell(table, 1, "kind"), "incoherence");
     EXPECT_EQ(cell(table, 1, "victim [quad]"), "9");
     EXPECT_EQ(cell(table, 1, "aggressor [quad]"), "4");
     EXPECT_EQ(cell(table, 1, "read [core cycle]"), "120");
@@ -103,12 +112,33 @@ TEST(ReportsText, TerminalTableFits120ColumnsAtAnyNumbers) {
     for (auto& run : comparison.runs) {
         run.cycles = 123'456'789;
         run.fragments = 98'765'432;
-        run.hazards = {1'234'567, 2'345'678, 3'456'789, 4'567'890, 262'144};
+        run.hazards.by = {{{1'234'567, 2'345'678}, {0, 0}, {3'456'789, 4'567'890}, {9'876'543, 1}}};
         run.wrong_pixels = 262'144;
         run.lost_fragments = 1'048'576;
     }
     for (const std::string& line : lines_of(reports::designs_text(comparison, {})))
         EXPECT_LE(line.size(), 120U) << line;
+}
+
+TEST(ReportsText, HazardsAreShownByClassAndKind) {
+    const std::string text = reports::hazards_text(sample_comparison(), {});
+    const auto lines = lines_of(text);
+    ASSERT_GE(lines.size(), 4U);
+    EXPECT_TRUE(lines[2].starts_with("racy bypass_l1=false  concurrency")) << text;
+    EXPECT_NE(lines[3].find("incoherence"), std::string::npos) << text;
+    EXPECT_EQ(text.find("safe"), std::string::npos) << "it has none";
+    auto none = sample_comparison();
+    none.runs[0].hazards = {};
+    EXPECT_EQ(reports::hazards_text(none, {}), "");
+}
+
+TEST(ReportsText, TerminalTableSaysWhatEachKindBreaksAndWhatProtectionCosts) {
+    const auto lines = lines_of(reports::designs_text(sample_comparison(), {}));
+    ASSERT_GE(lines.size(), 5U);
+    for (const char* title : {"concurrency", "incoherence", "speed", "on chip"})
+        EXPECT_NE(lines[0].find(title), std::string::npos) << lines[0];
+    EXPECT_NE(lines[3].find("68.0"), std::string::npos) << "KiB on chip: " << lines[3];
+    EXPECT_EQ(lines[4], "speed: times that of racy bypass_l1=false");
 }
 
 TEST(ReportsText, TerminalTableIsExactWhereItFits) {

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <set>
 
-namespace {
+namespace reports_truth_cache_test {
 
 using reports::Truth;
 using reports::TruthCache;
@@ -105,4 +105,4 @@ TEST(TruthCache, EveryParameterIsPartOfTheKey) {
     EXPECT_EQ(reports::truth_key("a", slabs, {}, plan), reports::truth_key("a", slabs, {}, plan));
 }
 
-} // namespace
+} // namespace reports_truth_cache_test

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
-namespace {
+namespace traces_camera_test {
 
 using traces::Scene;
 
@@ -124,4 +124,4 @@ TEST(Cameras, ErrorsNameWhatWasExpected) {
               "resolution: expected 1 to 16384 pixels across and down, got 5x16385");
 }
 
-} // namespace
+} // namespace traces_camera_test

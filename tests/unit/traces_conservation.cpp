@@ -8,7 +8,7 @@
 #include <cstring>
 #include <gtest/gtest.h>
 
-namespace {
+namespace traces_conservation_test {
 
 using namespace tests;
 using pipeline::Semantic;
@@ -102,4 +102,4 @@ TEST(Conservation, SameOrderNoticesTurnedCornersAndChangedValues) {
     EXPECT_EQ(compare(shifted, {Semantic::position}), 0.25);
 }
 
-} // namespace
+} // namespace traces_conservation_test

@@ -6,7 +6,7 @@
 #include <functional>
 #include <gtest/gtest.h>
 
-namespace {
+namespace traces_csg_expression_test {
 
 using traces::CsgExpression;
 
@@ -76,4 +76,4 @@ TEST(CsgExpression, NestingIsBoundedAndLengthIsNot) {
     EXPECT_TRUE(CsgExpression(sum, 2)({0, 1}));
 }
 
-} // namespace
+} // namespace traces_csg_expression_test

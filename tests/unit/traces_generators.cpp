@@ -7,7 +7,7 @@
 #include <map>
 #include <meshoptimizer.h>
 
-namespace {
+namespace traces_generators_test {
 
 using pipeline::Semantic;
 using traces::Scene;
@@ -151,4 +151,4 @@ TEST(Generators, ErrorsNameWhatWasExpected) {
               "819.7), got 1");
 }
 
-} // namespace
+} // namespace traces_generators_test

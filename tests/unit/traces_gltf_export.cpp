@@ -12,7 +12,7 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
-namespace {
+namespace traces_gltf_export_test {
 
 using namespace tests;
 using pipeline::Semantic;
@@ -243,4 +243,4 @@ TEST(GltfExport, SharedScenesDrawTheSameTriangles) {
     if (seen == 0) GTEST_SKIP() << "no folder of shared scenes";
 }
 
-} // namespace
+} // namespace traces_gltf_export_test

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace {
+namespace traces_pass_graph_test {
 
 using pipeline::Frame;
 using pipeline::Pass;
@@ -272,4 +272,4 @@ TEST(Workloads, EveryOneOfTheTableBuildsAFrame) {
     }
 }
 
-} // namespace
+} // namespace traces_pass_graph_test

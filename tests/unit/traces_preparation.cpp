@@ -9,7 +9,7 @@
 #include <rapidcheck/gtest.h>
 #include <set>
 
-namespace {
+namespace traces_preparation_test {
 
 using namespace tests;
 using pipeline::Semantic;
@@ -372,4 +372,4 @@ TEST(Preparation, TableNamesSummariesAndParameters) {
     }
 }
 
-} // namespace
+} // namespace traces_preparation_test

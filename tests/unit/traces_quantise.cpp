@@ -8,7 +8,7 @@
 #include <limits>
 #include <rapidcheck/gtest.h>
 
-namespace {
+namespace traces_quantise_test {
 
 using namespace tests;
 using pipeline::ComponentType;
@@ -217,4 +217,4 @@ TEST(Quantise, BoxesTooSmallForAMatrixStayAsTheyAre) {
     EXPECT_NE(result.steps[0].notes[1].find("too small"), std::string::npos);
 }
 
-} // namespace
+} // namespace traces_quantise_test

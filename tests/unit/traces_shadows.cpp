@@ -7,7 +7,7 @@
 #include <functional>
 #include <gtest/gtest.h>
 
-namespace {
+namespace traces_shadows_test {
 
 using traces::AreaLight;
 using traces::ShadowBias;
@@ -340,4 +340,4 @@ TEST(ShadowMap, TornLayersGiveNoNegativeBias) {
     EXPECT_EQ(map.bias(0, 0, 0), 0.0F);
 }
 
-} // namespace
+} // namespace traces_shadows_test

@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-namespace {
+namespace traces_tetrahedra_test {
 
 using support::TemporaryFolder;
 using traces::Scene;
@@ -206,4 +206,4 @@ TEST(Tetrahedra, TheFilesOfTheSharedFolderHaveTheCountsTheirTextsState) {
     EXPECT_TRUE(b.notes.empty());
 }
 
-} // namespace
+} // namespace traces_tetrahedra_test

@@ -12,7 +12,7 @@
 #include <rapidcheck/gtest.h>
 #include <set>
 
-namespace {
+namespace traces_vertex_formats_test {
 
 using pipeline::AttributeReader;
 using pipeline::ComponentType;
@@ -302,4 +302,4 @@ TEST(VertexFormats, RowsOfABlobFollowEachOther) {
     EXPECT_EQ(a, b);
 }
 
-} // namespace
+} // namespace traces_vertex_formats_test

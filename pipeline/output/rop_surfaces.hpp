@@ -1,0 +1,52 @@
+// What a ROP group works on, and what it is built for.
+#pragma once
+
+#include "pipeline/fragment/pass_context.hpp"
+#include "pipeline/fragment/quad_payloads.hpp"
+#include "pipeline/output/clear_bits.hpp"
+#include "pipeline/output/fragment_lists.hpp"
+#include "pipeline/output/hazard_ledger.hpp"
+
+#include <vector>
+
+namespace pipeline {
+
+/// What the fixed-function ROP reads and writes, in row order; each pixel is touched by the group that owns it.
+struct FixedSurfaces {
+    std::vector<DepthCode> depth;
+    std::vector<QuadId> winner;    ///< ~0 = cleared
+    std::vector<glm::vec4> colour; ///< linear RGBA, as the colour format holds it; empty when no pass writes colour
+    // Where a pass captures the farthest fragment, too.
+    std::vector<DepthCode> far_depth; ///< 0 = cleared
+    std::vector<QuadId> far_winner;
+    ClearBits depth_clear, colour_clear; ///< sectors that a fast clear left unwritten
+};
+
+/// What one draw did to the output stage.
+struct DrawOutput {
+    std::uint64_t quads = 0, fragments = 0, hazards = 0;
+    sim::Cycle first_cycle = ~sim::Cycle{0}, last_cycle = 0;
+};
+
+/// Surfaces and per-pixel books that all groups of a machine share, each its own pixels.
+struct RopSurfaces {
+    FixedSurfaces* fixed = nullptr;
+    KBufferMemory* kbuffer = nullptr;
+    StoreHistory* history = nullptr;
+    QuadPayloads* payloads = nullptr;
+    FragmentLists* lists = nullptr;
+    ClearBits* kbuffer_clear = nullptr; ///< of the k-buffer, or of the heads of lists
+};
+
+/// What a group is built for.
+struct RopShape {
+    std::uint32_t pipes = 1; ///< texture units that may read the k-buffer
+    std::size_t draws = 0;   ///< draws of the frame, for the counters per draw
+    bool depth = true;       ///< has a depth cache
+    bool colour = true;      ///< has a colour cache
+    std::uint32_t memory_partitions = 1;
+    std::uint32_t interleave = 256; ///< bytes; a request is cut where the next partition begins
+    std::uint32_t index = 0;        ///< of this group among the ROP groups
+};
+
+} // namespace pipeline

@@ -1,9 +1,9 @@
 // The texture L1 cache of one fragment pipe.
 //
 // Modelled: set-associative, LRU; lines of material textures and of peeled layers as tags with a pending state
-// (read-only data needs no bytes); lines of the k-buffer as snapshots of the bytes and versions at the time they were
-// sampled, because this cache is not coherent with the ROPs. Source: specification 004, section 7.1 (read value rule)
-// and section 7 (tex_l1 parameters).
+// (read-only data needs no bytes); lines of the k-buffer as snapshots of the bytes and versions of the array read that
+// filled them, because this cache is not coherent with the ROPs. Source: specification 004, section 7.1 (read value
+// rule) and section 7 (tex_l1 parameters).
 #pragma once
 
 #include "pipeline/fragment/fragment_params.hpp"

@@ -5,15 +5,16 @@
 // k-buffer, each with a share of the GPU's bytes; stores under a byte mask that fetch nothing; write-back of the dirty
 // pixels only, in whole bursts; fast clears, whose sectors are not fetched; depth test, colour write and fixed
 // blending; stores of k-buffer values computed by the shader; the programmable blender with its interlock; k-buffer
-// reads from texture units, served from the tile cache or from memory as the visibility rule says; units that modify
-// pixels in place (programmable blender, peeling unit, atomic minima); lists of fragments; write-back on replacement,
-// on command and at the end of a pass; clears and copies as streams of memory traffic. Every access to a pixel's state
-// happens in this one component, reads before writes within a cycle. A group of sample quads is taken apart as it
-// enters the queue, one sample quad per cycle: from there on each has its own sector, test, program run and bytes. A
-// read of a texture unit that finds only some of its pixels in the cache takes the others from memory, and they
-// complete the sector as they pass. Not modelled: stencil, logic operations, compression, tests and stores of several
-// samples at once. Source: specification 004, sections 2.1, 7 (rop parameters), 7.1 (t_rop, t_vis), 7.3, 7.4, 7.6
-// and 8.
+// reads from texture units, served from the tile cache or from memory as the visibility rule says, with the value of
+// the cycle in which that array is read; stores that can be seen behind the tile cache when the memory's array has
+// taken the burst that writes them back; units that modify pixels in place (programmable blender, peeling unit, atomic
+// minima); lists of fragments; write-back on replacement, on command and at the end of a pass; clears and copies as
+// streams of memory traffic. Every access to a pixel's state happens in this one component, reads before writes within
+// a cycle. A group of sample quads is taken apart as it enters the queue, one sample quad per cycle: from there on each
+// has its own sector, test, program run and bytes. A read of a texture unit that finds only some of its pixels in the
+// cache takes the others from memory, and they complete the sector as they pass. Not modelled: stencil, logic
+// operations, compression, tests and stores of several samples at once. Source: specification 004, sections 2.1, 7 (rop
+// parameters), 7.1 (t_rop, t_vis), 7.3, 7.4, 7.6 and 8.
 #pragma once
 
 #include "pipeline/fixed_queue.hpp"
@@ -186,8 +187,6 @@ class Rop final : public sim::Component {
     std::vector<DrawOutput> draw_outputs_;
     FixedQueue<Queued> queue_;
     FixedQueue<MemoryRequest> requests_;
-    std::uint32_t interleave_;
-    std::uint32_t index_;
     std::vector<std::deque<Coming>> coming_;                 ///< by memory partition, in order
     std::array<std::vector<std::uint32_t>, 3> parts_coming_; ///< of a tile that is fetched, by Use and entry
     FixedQueue<TimedRead> tile_reads_;                       ///< on their way to the tile cache's array

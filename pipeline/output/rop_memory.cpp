@@ -97,7 +97,7 @@ void Rop::request(std::uint64_t address, std::uint32_t bytes, std::uint32_t tag,
 
 // Requests of memory partitions that this many bytes take.
 std::uint32_t Rop::parts_of(std::uint64_t address, std::uint32_t bytes) const {
-    return static_cast<std::uint32_t>((address + bytes - 1) / interleave_ - address / interleave_ + 1);
+    return static_cast<std::uint32_t>((address + bytes - 1) / shape_.interleave - address / shape_.interleave + 1);
 }
 
 // The whole line, in whole bursts.
@@ -279,7 +279,7 @@ bool Rop::write_back_next() {
 void Rop::stream(std::uint64_t read_bytes, std::uint64_t write_bytes, bool resolve) {
     stream_reads_ = read_bytes;
     stream_writes_ = write_bytes;
-    stream_address_ = surface_span * 8 + std::uint64_t{index_} * stream_chunk;
+    stream_address_ = surface_span * 8 + std::uint64_t{shape_.index} * stream_chunk;
     sim::Counter& counter = resolve ? stats_.resolves : read_bytes != 0 ? stats_.copies : stats_.clears;
     counter += read_bytes + write_bytes;
     wake_in(1);
@@ -304,10 +304,11 @@ bool Rop::send_requests() {
     bool progress = false;
     while (!requests_.empty()) {
         MemoryRequest& whole = requests_.front();
-        auto& port = memory_out[whole.address / interleave_ % memory_out.size()];
+        auto& port = memory_out[whole.address / shape_.interleave % memory_out.size()];
         if (!port.ready()) break;
         MemoryRequest part = whole;
-        part.bytes = std::min(whole.bytes, interleave_ - static_cast<std::uint32_t>(whole.address % interleave_));
+        part.bytes =
+            std::min(whole.bytes, shape_.interleave - static_cast<std::uint32_t>(whole.address % shape_.interleave));
         port.send(part);
         progress = true;
         whole.address += part.bytes;

@@ -1,10 +1,12 @@
-// A first-in-first-out queue of fixed capacity; the storage of every queue inside a unit.
+// First-in-first-out queues in rings: of fixed capacity, the storage of every queue inside a unit; and one that grows,
+// for what is on a wire, which is as much as its latency holds.
 #pragma once
 
 #include "sim/check.hpp"
 
 #include <bit>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace pipeline {
@@ -36,6 +38,29 @@ class FixedQueue {
     std::uint32_t mask_;
     std::uint32_t head_ = 0, tail_ = 0;
     std::vector<T> ring_;
+};
+
+template <class T>
+class GrowingQueue {
+  public:
+    bool empty() const { return head_ == tail_; }
+    void push(const T& value) {
+        if (tail_ - head_ == ring_.size()) grow();
+        ring_[tail_++ & (ring_.size() - 1)] = value;
+    }
+    const T& front() const { return ring_[head_ & (ring_.size() - 1)]; }
+    void pop() { ++head_; }
+
+  private:
+    void grow() {
+        std::vector<T> wider(2 * ring_.size());
+        for (std::size_t i = 0; i < ring_.size(); ++i) wider[i] = ring_[(head_ + i) & (ring_.size() - 1)];
+        head_ = 0;
+        tail_ = ring_.size();
+        ring_ = std::move(wider);
+    }
+    std::size_t head_ = 0, tail_ = 0;
+    std::vector<T> ring_ = std::vector<T>(16); ///< a power of two
 };
 
 } // namespace pipeline

@@ -10,6 +10,8 @@
 #include "sim/component.hpp"
 #include "sim/simulation.hpp"
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <string_view>
 #include <type_traits>
@@ -21,6 +23,48 @@ struct ChannelConfig {
     Cycle latency = 1;          ///< sender cycles from send to receive, at least 1
     std::uint32_t width = 1;    ///< messages per edge, at least 1
     std::uint32_t capacity = 0; ///< messages between send and receive; 0 = width * (latency + 1)
+};
+
+/// Which of a component's inputs hold a message, one that is on its way included: a unit with many ports asks here
+/// and not at each of them. Belongs to the component and outlives its ports; for up to 256 of them.
+class InputSet {
+  public:
+    static constexpr std::uint32_t most = 256;
+
+    /// Calls `visit` with the numbers of those from `begin` to before `end` in turn, until it returns true; whether it
+    /// did.
+    template <class Visit>
+    bool any(std::uint32_t begin, std::uint32_t end, Visit visit) const {
+        for (std::uint32_t word = begin / 64; word < words_ && 64 * word < end; ++word) {
+            std::uint64_t left = held_[word];
+            if (word == begin / 64) left &= ~std::uint64_t{0} << begin % 64;
+            for (; left != 0; left &= left - 1) {
+                const std::uint32_t input = word * 64 + static_cast<std::uint32_t>(std::countr_zero(left));
+                if (input >= end) return false;
+                if (visit(input)) return true;
+            }
+        }
+        return false;
+    }
+    /// All of them in turn, from `first` on and round.
+    template <class Visit>
+    bool any_from(std::uint32_t first, Visit visit) const {
+        return any(first, most, visit) || any(0, first, visit);
+    }
+    bool empty() const {
+        return std::all_of(held_.begin(), held_.begin() + words_, [](std::uint64_t word) { return word == 0; });
+    }
+
+  private:
+    template <class T>
+    friend class In;
+    std::uint64_t& word_of(std::uint32_t input) {
+        CHECK(input < most);
+        words_ = std::max(words_, input / 64 + 1);
+        return held_[input / 64];
+    }
+    std::array<std::uint64_t, most / 64> held_{};
+    std::uint32_t words_ = 0; ///< in use
 };
 
 /// The simulation a component belongs to.
@@ -64,6 +108,7 @@ class ChannelBase {
     void note_send() {
         --room_;
         ++sent_;
+        *held_ |= held_bit_;
         if (woken_for_ != ready_) {
             woken_for_ = ready_;
             wake_receiver();
@@ -83,6 +128,7 @@ class ChannelBase {
         }
         ++received_;
         ++width_received_;
+        if (empty()) *held_ &= ~held_bit_;
         if (sender_waits_) wake_sender();
     }
 
@@ -98,8 +144,12 @@ class ChannelBase {
     std::uint32_t room_ = 0;            ///< messages that may still be sent at `send_time_`
     std::uint32_t width_received_ = 0;  ///< messages received at `receive_time_`
     bool sender_waits_ = false;
+    std::uint64_t held_bit_ = 0; ///< of the receiver's InputSet
+    std::uint64_t* held_ = &held_bit_;
 
   private:
+    template <class T>
+    friend class In;
     friend ChannelBase& adopt(Simulation& simulation, std::unique_ptr<ChannelBase> channel);
 
     static constexpr Time no_time = ~Time{0};
@@ -148,11 +198,16 @@ class Channel final : public ChannelBase {
         note_receive();
     }
 
-    T receive() {
+    const T* try_receive() {
         const T* message = peek();
+        if (message != nullptr) note_receive();
+        return message; // no send can come between and overwrite it
+    }
+
+    T receive() {
+        const T* message = try_receive();
         CHECK_MSG(message != nullptr, name());
-        note_receive();
-        return *message; // no send can come between and overwrite it
+        return *message;
     }
 
   private:
@@ -208,9 +263,14 @@ template <class T>
 class In {
   public:
     explicit In(Component& owner, std::string_view name) : owner_(&owner), name_(name) {}
+    /// One of many, number `index` of `set`.
+    In(Component& owner, std::string_view name, InputSet& set, std::uint32_t index)
+        : owner_(&owner), name_(name), held_(&set.word_of(index)), held_bit_(std::uint64_t{1} << index % 64) {}
     bool connected() const { return channel_ != nullptr; }
     /// The oldest message that has arrived, or nullptr; nullptr too once `width` messages were received at this edge.
     T* peek() { return linked().peek(); }
+    /// Takes the oldest message that has arrived, if there is one; valid during this tick.
+    const T* try_receive() { return linked().try_receive(); }
     /// Takes the message that peek() showed.
     T receive() { return linked().receive(); }
     /// Drops the message that peek() showed.
@@ -227,8 +287,17 @@ class In {
         return *channel_;
     }
 
+    void link(Channel<T>& channel) {
+        channel_ = &channel;
+        if (held_ == nullptr) return;
+        channel.held_ = held_;
+        channel.held_bit_ = held_bit_;
+    }
+
     Component* owner_;
     std::string_view name_;
+    std::uint64_t* held_ = nullptr;
+    std::uint64_t held_bit_ = 0;
     Channel<T>* channel_ = nullptr;
 };
 
@@ -239,7 +308,7 @@ ChannelBase& connect(Out<T>& out, In<T>& in, ChannelConfig config) {
                                                     in.owner_->name() + "." + std::string(in.name_),
                                                 config, *out.owner_, *in.owner_);
     out.channel_ = channel.get();
-    in.channel_ = channel.get();
+    in.link(*channel);
     return adopt(simulation_of(*out.owner_), std::move(channel));
 }
 

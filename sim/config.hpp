@@ -17,7 +17,7 @@ namespace sim {
 
 /// Where a number comes from; all texts of the file, or "command line".
 struct Origin {
-    std::string origin; ///< "public", "measured", "calibrated", "assumed", "command line"
+    std::string origin; ///< "public", "measured", "calibrated", "assumed", "off", "command line"
     std::string source;
     std::string note;
     friend bool operator==(const Origin&, const Origin&) = default;

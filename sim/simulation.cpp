@@ -128,7 +128,6 @@ void Simulation::begin_instant(Time instant) {
 }
 
 void Simulation::book(Component& component, Activity next) {
-    if (next == component.activity_) return;
     component.activity_times_[static_cast<std::size_t>(component.activity_)] += now_ - component.activity_since_;
     if (observer_ != nullptr && now_ > component.activity_since_)
         observer_->activity(component, component.activity_, component.activity_since_, now_);
@@ -140,7 +139,7 @@ Activity Simulation::tick(Component& component) {
     context_->component = &component.name_;
     const Activity activity = component.tick();
     ++ticks_;
-    book(component, activity);
+    if (activity != component.activity_) book(component, activity);
     return activity;
 }
 

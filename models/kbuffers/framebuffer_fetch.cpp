@@ -1,9 +1,9 @@
 // Framebuffer fetch: the k-buffer lies in on-chip tile memory that the shader reads and writes, ordered per pixel;
 // memory is touched when a finished tile is stored, and a tile that was cleared is not loaded.
 //
-// The whole surface counts as on chip. Not modelled: binning of the triangles, which a tiled GPU needs to visit its
-// tiles one after the other. Source: specification 004, section 8 (framebuffer fetch, pixel local storage, image
-// blocks).
+// The whole surface is on chip, in time and in area. Not modelled: binning of the triangles, with which a tiled GPU
+// makes do with the memory of one tile. Source: specification 004, section 8 (framebuffer fetch, pixel local storage,
+// image blocks).
 #include "models/kbuffers/lock_table.hpp"
 
 #include <fmt/format.h>
@@ -59,10 +59,9 @@ class FramebufferFetch final : public ConfiguredDesign<FramebufferFetch, Framebu
         plan.shader.read_return_latency = params_.read_return_latency;
         return plan;
     }
-    // Of a tiled GPU: memory of one tile of 32x32 pixels, and a place in the order unit for each quad in flight.
+    // What is held, and a place in the order unit for each quad in flight.
     AddedHardware area(const ModifyProgram&, const View& view, const GpuShape& shape) const override {
-        constexpr std::uint64_t tile_pixels = 1024; // 32x32
-        return {{{"tile_memory", tile_pixels * view.samples * params_.bytes_per_pixel * 8},
+        return {{{"tile_memory", view.samples_drawn() * params_.bytes_per_pixel * 8},
                  {"locks", std::uint64_t{shape.quads_in_flight} * 42}},
                 shape.quads_in_flight,
                 0};

@@ -62,10 +62,10 @@ class FragmentPipeline final : public sim::Component {
     sim::Out<Completion> done_out{*this, "done_out"};
     sim::Out<MemoryRequest> textures_out{*this, "textures_out"}; ///< linked when textures are read
     sim::In<MemoryResponse> textures_in{*this, "textures_in"};
-    std::deque<sim::Out<KBufferRead>> reads_out; ///< one per ROP partition, when the shader reads the k-buffer
-    std::deque<sim::In<KBufferReadDone>> reads_in;
-    std::deque<sim::In<LineInvalidation>> invalidations_in; ///< one per partition, when this cache is kept coherent
-    sim::Out<LockRequest> locks_out{*this, "locks_out"};    ///< linked when shaders have a critical section
+    std::vector<sim::Out<KBufferRead>> reads_out; ///< one per ROP partition, when the shader reads the k-buffer
+    std::vector<sim::In<KBufferReadDone>> reads_in;
+    std::vector<sim::In<LineInvalidation>> invalidations_in; ///< one per partition, when this cache is kept coherent
+    sim::Out<LockRequest> locks_out{*this, "locks_out"};     ///< linked when shaders have a critical section
     sim::In<LockGrant> locks_in{*this, "locks_in"};
 
     /// @param site null when the shader does not read the k-buffer
@@ -86,6 +86,7 @@ class FragmentPipeline final : public sim::Component {
         QuadTask task;
         std::uint64_t own = 0;    ///< render targets asked for and not answered
         std::uint64_t merged = 0; ///< render targets another thread has asked for
+        std::uint64_t lined = 0;  ///< of `own`, those that fill lines reserved for them in the L1
         std::uint32_t block = 0;
         std::uint32_t generation =
             0;                 ///< of L1 when the lookup was made, or one of its own when the line was invalidated

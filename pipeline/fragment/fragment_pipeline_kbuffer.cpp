@@ -27,7 +27,8 @@ bool FragmentPipeline::take_hits() {
     return progress;
 }
 
-// L1 lookup of every render target of the quad's block: hits are read now, pending lines joined, the rest asked for.
+// L1 lookup of every render target of the quad's block: hits are read now, pending lines joined, the rest asked for;
+// it comes back into a line where one could be reserved, else past the L1.
 void FragmentPipeline::lookup_targets(std::uint16_t index) {
     Thread& thread = threads_[index];
     const QuadTask& task = thread.task;
@@ -38,6 +39,7 @@ void FragmentPipeline::lookup_targets(std::uint16_t index) {
     thread.generation = l1_.generation();
     thread.looked_up = cycle();
     thread.own = all_targets();
+    thread.lined = 0;
     const sim::Cycle cost = std::uint64_t{texture_.cycles_per_rgba32f} * program_targets_;
     texture_free_ = std::max(texture_free_, cycle()) + cost;
     stats_.texture_cycles += cost;
@@ -46,16 +48,17 @@ void FragmentPipeline::lookup_targets(std::uint16_t index) {
         stats_.l1.kbuffer_misses += parts;
         return;
     }
-    std::uint64_t pending = 0;
-    for (std::uint16_t other = block_chain_[thread.block].first; other != nobody; other = threads_[other].next)
-        if (threads_[other].generation == thread.generation) pending |= threads_[other].own;
     for (std::uint32_t part = 0; part < parts; ++part) {
         const std::uint64_t targets = part_mask << part;
         const std::uint32_t line = l1_.find_kbuffer(thread.block, part);
         if (line == TextureCache::none) {
-            const bool join = (pending & targets) != 0;
-            if (join) thread.merged |= targets;
-            ++(join ? stats_.l1.kbuffer_merged : stats_.l1.kbuffer_misses);
+            if (l1_.reserve_kbuffer(thread.block, part) != TextureCache::none) thread.lined |= targets;
+            ++stats_.l1.kbuffer_misses;
+            continue;
+        }
+        if (l1_.pending(line)) {
+            thread.merged |= targets;
+            ++stats_.l1.kbuffer_merged;
             continue;
         }
         ++stats_.l1.kbuffer_hits;
@@ -73,7 +76,8 @@ bool FragmentPipeline::send_read(std::uint16_t index) {
     const Quad& quad = pass_->stream->quads[thread.task.quad];
     auto& port = reads_out[pass_->layout.partition_of(quad.x, quad.y)];
     if (!port.ready()) return false;
-    port.send({thread.block, thread.task.slot, thread.own, pass_->draw_of(thread.task.quad), pipe_, index});
+    const auto pixels = static_cast<std::uint8_t>(uses_l1() ? 15 : thread.task.pixels());
+    port.send({thread.block, thread.task.slot, thread.own, pass_->draw_of(thread.task.quad), pipe_, index, pixels});
     return true;
 }
 
@@ -130,12 +134,13 @@ bool FragmentPipeline::read_kbuffer_of_next() {
 }
 
 void FragmentPipeline::fill_l1(const Thread& thread, std::uint64_t targets) {
-    if (!uses_l1() || thread.generation != l1_.generation()) return;
+    if (thread.generation != l1_.generation()) return;
     for (std::uint32_t part = 0; part < program_targets_ / line_targets_; ++part) {
         const std::uint32_t first = part * line_targets_;
         if ((targets >> first & 1) == 0) continue;
-        const std::uint32_t line = l1_.put_kbuffer(thread.block, part);
-        if (line == TextureCache::none) continue;
+        const std::uint32_t line = l1_.find_kbuffer(thread.block, part);
+        CHECK(line != TextureCache::none && l1_.pending(line));
+        l1_.filled(line);
         l1_.filled_at(line) = payloads_->fill(thread.task.slot, first);
         for (std::uint32_t pixel = 0; pixel < 4; ++pixel) {
             const float* from = payloads_->values(thread.task.slot, pixel) + std::size_t{first} * 4;
@@ -176,9 +181,9 @@ void FragmentPipeline::finish_complete(std::uint32_t block) {
 
 void FragmentPipeline::kbuffer_arrived(std::uint16_t index) {
     Thread& thread = threads_[index];
-    const std::uint64_t targets = std::exchange(thread.own, 0);
-    fill_l1(thread, targets);
-    give_to_waiting(thread, targets);
+    const std::uint64_t lined = std::exchange(thread.own, 0) & thread.lined;
+    fill_l1(thread, lined);
+    give_to_waiting(thread, lined);
     finish_complete(thread.block);
 }
 

@@ -16,7 +16,6 @@
 #include "sim/stats.hpp"
 
 #include <atomic>
-#include <deque>
 #include <vector>
 
 namespace pipeline {
@@ -61,8 +60,8 @@ class FragmentScheduler final : public sim::Component {
   public:
     sim::In<QuadTask> quads_in{*this, "quads_in"};
     sim::Out<QuadTask> order_out{*this, "order_out"};
-    std::deque<sim::Out<QuadTask>> pipes_out; ///< one per pipe
-    std::deque<sim::In<Commit>> commits_in;   ///< one per ROP partition; only with payloads or a guard
+    std::vector<sim::Out<QuadTask>> pipes_out; ///< one per pipe
+    std::vector<sim::In<Commit>> commits_in;   ///< one per ROP partition; only with payloads or a guard
 
     /// @param plan what guards dispatch; must outlive the scheduler
     /// @param payloads null when no shader reads the k-buffer

@@ -14,7 +14,6 @@
 #include "sim/described.hpp"
 #include "sim/stats.hpp"
 
-#include <deque>
 #include <vector>
 
 namespace pipeline {
@@ -38,9 +37,9 @@ static_assert(sim::fully_described<LockTableStats>);
 
 class LockTable final : public sim::Component {
   public:
-    std::deque<sim::In<LockRequest>> requests_in; ///< one per pipe
-    std::deque<sim::Out<LockGrant>> grants_out;   ///< one per pipe
-    std::deque<sim::In<Commit>> releases_in;      ///< one per ROP partition
+    std::vector<sim::In<LockRequest>> requests_in; ///< one per pipe
+    std::vector<sim::Out<LockGrant>> grants_out;   ///< one per pipe
+    std::vector<sim::In<Commit>> releases_in;      ///< one per ROP partition
 
     /// @param quads most quads that can wait
     LockTable(sim::Context context, const ShaderSite& site, const PassContext& pass, std::uint32_t pipes,

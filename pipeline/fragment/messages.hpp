@@ -66,6 +66,7 @@ struct KBufferRead {
     std::uint32_t draw = 0;
     std::uint16_t pipe = 0;
     std::uint16_t thread = 0; ///< comes back in the answer
+    std::uint8_t pixels = 15; ///< mask of those that are wanted: all where they fill a line of the L1
 };
 
 struct KBufferReadDone {

@@ -13,7 +13,6 @@
 #include "sim/described.hpp"
 #include "sim/stats.hpp"
 
-#include <deque>
 #include <vector>
 
 namespace pipeline {
@@ -46,8 +45,8 @@ static_assert(sim::fully_described<ReorderBufferStats>);
 
 class ReorderBuffer final : public sim::Component {
   public:
-    sim::In<QuadTask> order_in{*this, "order_in"};  ///< in dispatch order; in order, held in the link until complete
-    std::deque<sim::In<Completion>> completions_in; ///< one per pipe
+    sim::In<QuadTask> order_in{*this, "order_in"};   ///< in dispatch order; in order, held in the link until complete
+    std::vector<sim::In<Completion>> completions_in; ///< one per pipe
     sim::Out<QuadTask> quads_out{*this, "quads_out"};
 
     /// @param quads places; in order they are those of the order_in link

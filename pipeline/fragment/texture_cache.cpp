@@ -21,7 +21,7 @@ TextureCache::TextureCache(const TextureParams& params, std::uint32_t line_targe
 // The targets of one block fall into neighbouring sets, and neighbouring blocks into different ones.
 std::size_t TextureCache::set_of(std::uint64_t tag) const {
     const std::uint64_t line = tag >> 1U;
-    return ((tag & 1U) != 0 ? line / 64 * (64 / 16) + line % 64 : line) % sets_;
+    return (is_kbuffer(tag) ? line / 64 * (64 / 16) + line % 64 : line) % sets_;
 }
 
 std::uint32_t TextureCache::find(std::uint64_t tag) {
@@ -29,14 +29,14 @@ std::uint32_t TextureCache::find(std::uint64_t tag) {
     const std::size_t first = set_of(tag) * ways_;
     for (std::size_t at = first; at < first + ways_; ++at) {
         Line& line = lines_[at];
-        if (line.tag != tag || ((tag & 1U) != 0 && line.generation != generation_)) continue;
+        if (line.tag != tag) continue;
         line.used = ++clock_;
         return static_cast<std::uint32_t>(at);
     }
     return none;
 }
 
-std::uint32_t TextureCache::victim(std::uint64_t tag) {
+std::uint32_t TextureCache::reserve(std::uint64_t tag) {
     if (sets_ == 0) return none;
     const std::size_t first = set_of(tag) * ways_;
     std::uint32_t best = none;
@@ -44,23 +44,15 @@ std::uint32_t TextureCache::victim(std::uint64_t tag) {
         if (lines_[at].pending) continue;
         if (best == none || lines_[at].used < lines_[best].used) best = static_cast<std::uint32_t>(at);
     }
-    if (best != none) lines_[best] = {tag, ++clock_, generation_, false, 0};
+    if (best != none) lines_[best] = {tag, ++clock_, true, 0};
     return best;
 }
 
-std::uint32_t TextureCache::reserve_texture(std::uint64_t line) {
-    const std::uint32_t index = victim(line << 1U);
-    if (index != none) lines_[index].pending = true;
-    return index;
+void TextureCache::drop_kbuffer_lines() {
+    ++generation_;
+    for (Line& line : lines_)
+        if (is_kbuffer(line.tag)) line = {};
 }
-
-std::uint32_t TextureCache::put_kbuffer(std::uint32_t block, std::uint32_t part) {
-    const std::uint64_t tag = kbuffer_tag(block, part);
-    const std::uint32_t index = find(tag);
-    return index != none ? index : victim(tag);
-}
-
-void TextureCache::drop_kbuffer_lines() { ++generation_; }
 
 void TextureCache::drop_kbuffer_block(std::uint32_t block, std::uint32_t parts) {
     for (std::uint32_t part = 0; part < parts; ++part)

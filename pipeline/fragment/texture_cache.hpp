@@ -47,14 +47,14 @@ class TextureCache {
     /// Line of read-only data; `line` is an address / 64.
     std::uint32_t find_texture(std::uint64_t line) { return find(line << 1U); }
     /// Reserves a line whose data is on its way; none when every way of the set is pending.
-    std::uint32_t reserve_texture(std::uint64_t line);
+    std::uint32_t reserve_texture(std::uint64_t line) { return reserve(line << 1U); }
     bool pending(std::uint32_t index) const { return lines_[index].pending; }
     void filled(std::uint32_t index) { lines_[index].pending = false; }
 
     /// Line `part` (target / line_targets) of block `block`.
     std::uint32_t find_kbuffer(std::uint32_t block, std::uint32_t part) { return find(kbuffer_tag(block, part)); }
-    /// Puts a line in, replacing the least recently used one; none when every way is pending.
-    std::uint32_t put_kbuffer(std::uint32_t block, std::uint32_t part);
+    /// Reserves a line for the values that are asked for now, which later lookups join; none as for textures.
+    std::uint32_t reserve_kbuffer(std::uint32_t block, std::uint32_t part) { return reserve(kbuffer_tag(block, part)); }
     /// Bytes of pixel `pixel`, render target `target` within the line; 4 floats.
     float* data(std::uint32_t index, std::uint32_t pixel, std::uint32_t target) {
         return data_.data() + ((static_cast<std::size_t>(index) * 4 + pixel) * line_targets_ + target) * 4;
@@ -72,19 +72,20 @@ class TextureCache {
     std::uint32_t generation() const { return generation_; }
 
   private:
+    static constexpr std::uint64_t no_tag = ~std::uint64_t{1};
     struct Line {
-        std::uint64_t tag = ~std::uint64_t{0};
+        std::uint64_t tag = no_tag;
         std::uint64_t used = 0;
-        std::uint32_t generation = 0;
         bool pending = false;
         sim::Cycle filled_at = 0; ///< of a line of the k-buffer
     };
     static constexpr std::uint64_t kbuffer_tag(std::uint32_t block, std::uint32_t part) {
         return (static_cast<std::uint64_t>(block) * 64 + part) << 1U | 1U;
     }
+    static constexpr bool is_kbuffer(std::uint64_t tag) { return (tag & 1U) != 0; }
     std::size_t set_of(std::uint64_t tag) const;
     std::uint32_t find(std::uint64_t tag);
-    std::uint32_t victim(std::uint64_t tag);
+    std::uint32_t reserve(std::uint64_t tag);
 
     std::uint32_t ways_;
     std::uint32_t line_targets_;

@@ -73,6 +73,7 @@ void DramChannel::note_conflicts(Bank& bank, Request& request, std::uint32_t dir
 void DramChannel::clear_one(Request& request, std::uint32_t direction) {
     if (--request.waits_for != 0) return;
     request.cleared = arrivals_;
+    arrivals_of_[direction].at(request.place).bursts = request.bursts;
     ++eligible_[direction];
 }
 
@@ -127,17 +128,30 @@ void DramChannel::turn_to(std::uint32_t direction, Fine now) {
 
 // The arrival of the request with which a batch is full, in order; without end if so many do not wait.
 std::uint64_t DramChannel::last_of_batch() {
-    arrivals_of_batch_.clear();
-    for (const Bank& bank : banks_)
-        for (const Request& request : bank.requests[direction_])
-            if (request.waits_for == 0) arrivals_of_batch_.emplace_back(request.number, request.bursts);
-    std::sort(arrivals_of_batch_.begin(), arrivals_of_batch_.end());
+    Arrivals& arrivals = arrivals_of_[direction_];
+    while (arrivals.begin != arrivals.end && arrivals.at(arrivals.begin).gone) ++arrivals.begin;
     std::uint64_t left = batch_;
-    for (const auto& [number, bursts] : arrivals_of_batch_) {
-        if (bursts >= left) return number;
-        left -= bursts;
+    for (std::uint64_t place = arrivals.begin; place != arrivals.end; ++place) {
+        const Arrivals::Arrival& arrival = arrivals.at(place);
+        if (arrival.bursts >= left) return arrival.number;
+        left -= arrival.bursts;
     }
     return ~std::uint64_t{0};
+}
+
+void DramChannel::note_arrival(Request& request, std::uint32_t direction) {
+    Arrivals& arrivals = arrivals_of_[direction];
+    if (arrivals.end - arrivals.begin == arrivals.ring.size()) {
+        while (arrivals.begin != arrivals.end && arrivals.at(arrivals.begin).gone) ++arrivals.begin;
+        if (arrivals.end - arrivals.begin == arrivals.ring.size()) {
+            std::vector<Arrivals::Arrival> wider(2 * arrivals.ring.size());
+            for (std::uint64_t place = arrivals.begin; place != arrivals.end; ++place)
+                wider[place & (wider.size() - 1)] = arrivals.at(place);
+            arrivals.ring = std::move(wider);
+        }
+    }
+    request.place = arrivals.end++;
+    arrivals.at(request.place) = {request.number, request.waits_for == 0 ? request.bursts : 0, false};
 }
 
 // The direction stays what it is: every row may be opened.
@@ -244,6 +258,7 @@ DramChannel::Transfer DramChannel::commit(Fine now) {
     bank.overtakes[direction_] = bank.next == 0 ? 0 : bank.overtakes[direction_] + 1;
     auto& requests = bank.requests[direction_];
     requests.erase(requests.begin() + static_cast<std::ptrdiff_t>(bank.next));
+    arrivals_of_[direction_].at(request.place) = {request.number, 0, true};
     --waiting_[direction_];
     --eligible_[direction_];
     batch_ -= std::min<std::uint64_t>(batch_, request.bursts);
@@ -268,6 +283,7 @@ void DramChannel::enqueue(std::uint64_t local, std::uint32_t bytes, bool write, 
     request.id = id;
     Bank& bank = banks_[bank_of_row(request.row)];
     if (!bank.requests[0].empty() || !bank.requests[1].empty()) note_conflicts(bank, request, direction);
+    note_arrival(request, direction);
     ++waiting_[direction];
     if (request.waits_for == 0) ++eligible_[direction];
     if (write) write_bursts_ += request.bursts;

@@ -20,7 +20,6 @@
 #include <array>
 #include <cstdint>
 #include <optional>
-#include <utility>
 #include <vector>
 
 namespace pipeline {
@@ -89,6 +88,7 @@ class DramChannel {
         std::uint32_t id = 0;
         std::uint32_t waits_for = 0; ///< older requests that share a burst with it and that it might overtake
         std::uint64_t cleared = 0;   ///< requests that had arrived when it had nothing to wait for any more
+        std::uint64_t place = 0;     ///< in the order of arrival of its direction
         bool waited_for = false;     ///< by a younger one
         bool holds_read = false;     ///< a write that a read waits for
     };
@@ -117,6 +117,7 @@ class DramChannel {
     bool keeps_row(const Bank& bank, const Request& wants_another) const;
     void choose(Bank& bank, Fine now);
     std::uint64_t last_of_batch();
+    void note_arrival(Request& request, std::uint32_t direction);
     void end_batch(Fine now);
     void turn_to(std::uint32_t direction, Fine now);
     void decide(Fine now);
@@ -155,8 +156,19 @@ class DramChannel {
     std::uint32_t moved_ = 0;                 ///< direction of the last transfer
     std::uint64_t batch_ = 0;                 ///< bursts left of the batch of writes, or of the reads that follow it
     std::uint64_t reach_ = ~std::uint64_t{0}; ///< arrival of the last request that the batch will move
-    std::vector<std::pair<std::uint64_t, std::uint32_t>> arrivals_of_batch_; ///< scratch
-    std::uint64_t passed_ = 0; ///< bursts of reads that went first while a write waited
+    std::uint64_t passed_ = 0;                ///< bursts of reads that went first while a write waited
+    /// Requests of one direction in the order of their arrival, for the bounds of batches.
+    struct Arrivals {
+        struct Arrival {
+            std::uint64_t number = 0;
+            std::uint32_t bursts = 0; ///< 0: transferred, or waits for another
+            bool gone = false;
+        };
+        std::uint64_t begin = 0, end = 0;                     ///< places; all before `begin` are gone
+        std::vector<Arrival> ring = std::vector<Arrival>(64); ///< by place; a power of two
+        Arrival& at(std::uint64_t place) { return ring[place & (ring.size() - 1)]; }
+    };
+    std::array<Arrivals, 2> arrivals_of_; ///< by direction
     std::vector<Bank> banks_;
     DramEvents events_;
 };

@@ -37,7 +37,7 @@ MemoryController::MemoryController(sim::Context context, const Params& params, c
 
 MemoryController::RopPort& MemoryController::add_rop() {
     CHECK_MSG(ports_.size() <= most_rops, name());
-    RopPort& port = rops_.emplace_back(*this);
+    RopPort& port = rops_.emplace_back(*this, held_, static_cast<std::uint32_t>(ports_.size()));
     // What waits for the bus, and as much that has crossed it and waits for room.
     ports_.push_back({&port.requests_in, &port.responses_out,
                       FixedQueue<Answer>(2 * static_cast<std::uint32_t>(waiting_.size()) + 2)});
@@ -64,6 +64,15 @@ void MemoryController::book(const MemoryRequest& request) {
     draw_bytes_[request.draw][client] += bytes;
 }
 
+MemoryControllerStats MemoryController::stats() const {
+    Stats stats = stats_;
+    const DramEvents& events = channel_.events();
+    stats.turnarounds = {events.turnarounds};
+    stats.activation_waits = {events.activation_waits};
+    stats.refreshes = {events.refreshes};
+    return stats;
+}
+
 bool MemoryController::answer(Port& port) {
     bool progress = false;
     while (!port.answers.empty() && port.answers.front().ready <= cycle() && port.responses->ready()) {
@@ -78,27 +87,27 @@ bool MemoryController::answer(Port& port) {
 
 // One request a cycle: the crossbar and the ROP partitions take turns, and so do these among themselves.
 bool MemoryController::accept() {
+    if (channel_.waiting(false) >= params_.queue && channel_.waiting(true) >= params_.write_queue) return false;
     const bool turn = hub_first_;
     if (turn && accept_from(hub)) {
         hub_first_ = false;
         return true;
     }
-    for (std::size_t i = 1, index = rop_turn_; i < ports_.size();
-         ++i, index = index + 1 < ports_.size() ? index + 1 : 1) {
-        if (!accept_from(index)) continue;
+    const bool taken = held_.any_from(rop_turn_, [&](std::uint32_t index) {
+        if (index == hub || !accept_from(index)) return false;
         rop_turn_ = index + 1 < ports_.size() ? index + 1 : 1;
-        hub_first_ = true;
         return true;
-    }
-    return !turn && accept_from(hub);
+    });
+    if (!taken) return !turn && accept_from(hub);
+    hub_first_ = true;
+    return true;
 }
 
-bool MemoryController::accept_from(std::size_t index) {
+bool MemoryController::accept_from(std::uint32_t index) {
     Port& port = ports_[index];
-    if (!port.requests->connected() || port.answers.size() + channel_.waiting() >= port.answers.capacity())
-        return false;
+    if (!port.requests->connected()) return false;
     const MemoryRequest* request = port.requests->peek();
-    if (request == nullptr) return false;
+    if (request == nullptr || port.answers.size() + channel_.waiting() >= port.answers.capacity()) return false;
     if (channel_.waiting(request->write) >= (request->write ? params_.write_queue : params_.queue)) return false;
     CHECK(request->bytes >= 1 && request->bytes <= largest_request && request->draw < most_draws);
     const std::uint32_t id = free_ids_.back();
@@ -121,10 +130,6 @@ bool MemoryController::transfer() {
         progress = true;
         if (!request.write || request.notify) note_answer(request, *transfer);
     }
-    const DramEvents& events = channel_.events();
-    stats_.turnarounds = {events.turnarounds};
-    stats_.activation_waits = {events.activation_waits};
-    stats_.refreshes = {events.refreshes};
     return progress;
 }
 
@@ -163,7 +168,8 @@ sim::Activity MemoryController::wait() {
 
 sim::Activity MemoryController::tick() {
     bool progress = false;
-    for (Port& port : ports_) progress |= answer(port);
+    for (Port& port : ports_)
+        if (!port.answers.empty()) progress |= answer(port);
     progress |= accept();
     progress |= transfer();
     return progress ? sim::Activity::busy : wait();

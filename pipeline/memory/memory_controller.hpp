@@ -15,6 +15,7 @@
 #include "sim/described.hpp"
 
 #include <deque>
+#include <vector>
 
 namespace pipeline {
 
@@ -49,14 +50,18 @@ static_assert(sim::fully_described<MemoryControllerStats>);
 using MemoryBytes = std::array<std::uint64_t, memory_client_count>;
 
 class MemoryController final : public sim::Component {
+    static constexpr std::uint32_t hub = 0; ///< port; the others are those of ROP partitions
+    sim::InputSet held_;                    ///< by port
+
   public:
     using Params = MemoryControllerParams;
     using Stats = MemoryControllerStats;
 
-    sim::In<MemoryRequest> hub_in{*this, "hub_in"};
+    sim::In<MemoryRequest> hub_in{*this, "hub_in", held_, hub};
     sim::Out<MemoryResponse> hub_out{*this, "hub_out"};
     struct RopPort {
-        explicit RopPort(sim::Component& owner) : requests_in(owner, "rop_in"), responses_out(owner, "rop_out") {}
+        RopPort(sim::Component& owner, sim::InputSet& held, std::uint32_t port)
+            : requests_in(owner, "rop_in", held, port), responses_out(owner, "rop_out") {}
         sim::In<MemoryRequest> requests_in;
         sim::Out<MemoryResponse> responses_out;
     };
@@ -74,7 +79,7 @@ class MemoryController final : public sim::Component {
     /// A new port pair for one more ROP partition; at most 254.
     RopPort& add_rop();
 
-    const Stats& stats() const { return stats_; }
+    Stats stats() const;
     const Params& params() const { return params_; }
     /// Bytes booked to draw `i`; draws without traffic may be missing at the end.
     const std::vector<MemoryBytes>& draw_bytes() const { return draw_bytes_; }
@@ -101,12 +106,10 @@ class MemoryController final : public sim::Component {
         bool write = false;
         bool notify = false;
     };
-    static constexpr std::size_t hub = 0; ///< port; the others are those of ROP partitions
-
     sim::Activity tick() override;
     bool answer(Port& port);
     bool accept();
-    bool accept_from(std::size_t index);
+    bool accept_from(std::uint32_t index);
     bool transfer();
     void note_answer(const Waiting& request, const DramChannel::Transfer& transfer);
     void book(const MemoryRequest& request);
@@ -121,8 +124,8 @@ class MemoryController final : public sim::Component {
     sim::Random random_;
     std::deque<RopPort> rops_;
     std::vector<Port> ports_;
-    bool hub_first_ = true;    ///< the crossbar's turn
-    std::size_t rop_turn_ = 1; ///< port of the ROP partition that goes first
+    bool hub_first_ = true;      ///< the crossbar's turn
+    std::uint32_t rop_turn_ = 1; ///< port of the ROP partition that goes first
     std::vector<Waiting> waiting_;
     std::vector<std::uint32_t> free_ids_; ///< unused entries of waiting_
     std::vector<MemoryBytes> draw_bytes_;

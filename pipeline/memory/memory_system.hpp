@@ -22,8 +22,8 @@ class MemorySystem {
     void attach(sim::Out<MemoryRequest>& requests, sim::In<MemoryResponse>& responses);
     /// Links ROP partition `rop` to all memory partitions: element i of each deque to partition i. A request must lie
     /// within one interleave block of that partition. ROP partitions are attached in the order of their numbers.
-    void attach_rop(std::uint32_t rop, std::deque<sim::Out<MemoryRequest>>& requests,
-                    std::deque<sim::In<MemoryResponse>>& responses);
+    void attach_rop(std::uint32_t rop, std::vector<sim::Out<MemoryRequest>>& requests,
+                    std::vector<sim::In<MemoryResponse>>& responses);
 
     std::uint32_t partitions() const { return params_.partitions; }
     /// The partition in which `address` lies.

@@ -14,7 +14,6 @@
 #include "sim/described.hpp"
 #include "sim/stats.hpp"
 
-#include <deque>
 #include <vector>
 
 namespace pipeline {
@@ -32,7 +31,7 @@ static_assert(sim::fully_described<CrossbarStats>);
 class Crossbar final : public sim::Component {
   public:
     sim::In<QuadTask> quads_in{*this, "quads_in"};
-    std::deque<sim::Out<QuadTask>> partitions_out; ///< one per ROP group
+    std::vector<sim::Out<QuadTask>> partitions_out; ///< one per ROP group
 
     Crossbar(sim::Context context, const CrossbarParams& params, const PassContext& pass, std::uint32_t partitions);
 

@@ -23,7 +23,9 @@ HazardClass HazardLedger::class_of(const Read& read, const StoreHistory::Store& 
 
 bool HazardLedger::book(std::uint32_t block, std::uint32_t pixel, std::uint32_t quad, const Read& read,
                         sim::Cycle stored) {
-    const bool hazard = read.oldest != read.order || read.newest != read.order;
+    // A read can hold more than its predecessors where nothing keeps the quads of a pixel in order: it misses nothing,
+    // and whoever overtook it is the victim.
+    const bool hazard = read.oldest < read.order || read.oldest != read.newest;
     const StoreHistory::Store& aggressor = history_->store(block, pixel);
     // Where nothing keeps the quads of a pixel in order, a predecessor can be on its way even now.
     const bool on_its_way = read.oldest < read.order && aggressor.number < read.order;
@@ -37,7 +39,6 @@ bool HazardLedger::book(std::uint32_t block, std::uint32_t pixel, std::uint32_t 
     counts_.pixels += classes == 0 ? 1 : 0;
     classes = static_cast<std::uint8_t>(classes | 1U << static_cast<unsigned>(cause));
 
-    // A read can hold a successor's store, too, where nothing keeps quads of one pixel in order.
     const std::uint32_t missing = read.order > read.oldest ? read.order - read.oldest : 0;
     staleness_sum_ += missing;
     staleness_max_ = std::max<std::uint64_t>(staleness_max_, missing);

@@ -39,10 +39,11 @@ Rop::Rop(sim::Context context, const RopParams& params, const PassContext& pass,
     port_names_.reserve(std::size_t{3} * shape.pipes + std::size_t{2} * shape.memory_partitions);
     for (std::uint32_t i = 0; i < shape.memory_partitions; ++i) {
         memory_out.emplace_back(*this, port_names_.emplace_back("memory" + std::to_string(i) + "_out"));
-        memory_in.emplace_back(*this, port_names_.emplace_back("memory" + std::to_string(i) + "_in"));
+        memory_in.emplace_back(*this, port_names_.emplace_back("memory" + std::to_string(i) + "_in"), memory_held_, i);
     }
     for (std::uint32_t pipe = 0; surfaces.payloads != nullptr && pipe < shape.pipes; ++pipe) {
-        reads_in.emplace_back(*this, port_names_.emplace_back("reads" + std::to_string(pipe) + "_in"));
+        reads_in.emplace_back(*this, port_names_.emplace_back("reads" + std::to_string(pipe) + "_in"), reads_held_,
+                              pipe);
         reads_out.emplace_back(*this, port_names_.emplace_back("reads" + std::to_string(pipe) + "_out"));
         if (plan.shader.coherence == TextureCoherence::invalidate_on_write)
             invalidations_out.emplace_back(*this,
@@ -202,19 +203,19 @@ sim::Activity Rop::tick() {
     if (!pending_blends_.empty()) apply_pending_blends();
     bool progress = take_memory();
     sim::Activity waiting = sim::Activity::starved;
-    progress |= send_commits();
+    if (!commits_.empty()) progress |= send_commits();
     progress |= serve_tile_reads();
-    progress |= accept_reads();
-    progress |= write_back_next();
+    if (!reads_held_.empty()) progress |= accept_reads();
+    if (writing_back_) progress |= write_back_next();
     if (!writing_back_) {
         progress |= execute(waiting);
         progress |= admit();
     }
-    progress |= stream_next();
+    if (stream_reads_ + stream_writes_ != 0) progress |= stream_next();
     progress |= send_requests();
     progress |= send_answers();
-    progress |= send_invalidations();
-    progress |= send_bounds();
+    if (!invalidations_.empty()) progress |= send_invalidations();
+    if (!bounds_.empty()) progress |= send_bounds();
     if (progress) return sim::Activity::busy;
     if (waiting != sim::Activity::starved) return waiting;
     const bool holds = !requests_.empty() || !answers_.empty() || !tile_reads_.empty() || !tile_answers_.empty() ||

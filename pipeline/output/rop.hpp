@@ -33,16 +33,18 @@
 namespace pipeline {
 
 class Rop final : public sim::Component {
+    sim::InputSet memory_held_, reads_held_;
+
   public:
     sim::In<QuadTask> quads_in{*this, "quads_in"};
-    std::deque<sim::Out<MemoryRequest>> memory_out; ///< one per memory partition
-    std::deque<sim::In<MemoryResponse>> memory_in;
+    std::vector<sim::Out<MemoryRequest>> memory_out; ///< one per memory partition
+    std::vector<sim::In<MemoryResponse>> memory_in;
     sim::Out<Commit> commits_out{*this, "commits_out"};       ///< linked when someone waits for stores
     sim::Out<Commit> releases_out{*this, "releases_out"};     ///< the same stores, linked when shaders hold locks
     sim::Out<LastEntryBound> bounds_out{*this, "bounds_out"}; ///< linked when fragments are rejected early
-    std::deque<sim::In<KBufferRead>> reads_in;                ///< one per pipe, when shaders read the k-buffer
-    std::deque<sim::Out<KBufferReadDone>> reads_out;
-    std::deque<sim::Out<LineInvalidation>> invalidations_out; ///< one per pipe, when texture caches are kept coherent
+    std::vector<sim::In<KBufferRead>> reads_in;               ///< one per pipe, when shaders read the k-buffer
+    std::vector<sim::Out<KBufferReadDone>> reads_out;
+    std::vector<sim::Out<LineInvalidation>> invalidations_out; ///< one per pipe, when texture caches are kept coherent
 
     Rop(sim::Context context, const RopParams& params, const PassContext& pass, const KBufferPlan& plan,
         const RopSurfaces& surfaces, const RopShape& shape);
@@ -77,6 +79,7 @@ class Rop final : public sim::Component {
     static constexpr std::uint32_t tag_store = 4U << 28U; ///< | store in flight; write that can be seen from then on
     static constexpr std::uint32_t tag_kind = 15U << 28U;
     static constexpr std::uint32_t all_target = 64;
+    static constexpr sim::Cycle never = ~sim::Cycle{0};
 
     enum class Use : std::uint8_t { depth, colour, kbuffer };
     struct Queued {
@@ -115,6 +118,7 @@ class Rop final : public sim::Component {
     void array_accessed(std::uint32_t tag);
     void take_answer(std::uint32_t tag);
     bool accept_reads();
+    void accept_read(const KBufferRead& read);
     bool serve_tile_reads();
     bool admit();
     QuadTask next_part(const QuadTask& task) const;
@@ -163,7 +167,7 @@ class Rop final : public sim::Component {
     void note_bound(std::uint32_t block, std::uint32_t pixel);
     float last_depth(std::uint32_t block, std::uint32_t pixel);
     bool send_bounds();
-    bool kbuffer_on_chip(std::uint32_t block) const;
+    bool kbuffer_on_chip(const KBufferRead& read) const;
     void apply_pending_blends();
     static Commit commit_of(const Queued& queued);
     void finish(const Queued& queued);
@@ -187,7 +191,8 @@ class Rop final : public sim::Component {
     std::vector<DrawOutput> draw_outputs_;
     FixedQueue<Queued> queue_;
     FixedQueue<MemoryRequest> requests_;
-    std::vector<std::deque<Coming>> coming_;                 ///< by memory partition, in order
+    std::vector<GrowingQueue<Coming>> coming_;               ///< by memory partition, in order
+    sim::Cycle first_coming_ = never;                        ///< when the first of them is here
     std::array<std::vector<std::uint32_t>, 3> parts_coming_; ///< of a tile that is fetched, by Use and entry
     FixedQueue<TimedRead> tile_reads_;                       ///< on their way to the tile cache's array
     FixedQueue<TimedRead> tile_answers_;                     ///< and back from it

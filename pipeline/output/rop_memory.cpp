@@ -182,22 +182,28 @@ void Rop::clean(Use use, std::uint32_t entry) {
 // Answers come when the array is read; what hangs on the data waits until they are here.
 bool Rop::take_memory() {
     bool progress = false;
-    sim::Cycle next = ~sim::Cycle{0};
-    for (std::size_t i = 0; i < coming_.size(); ++i) {
-        auto& coming = coming_[i];
-        for (; memory_in[i].peek() != nullptr; progress = true) {
-            const MemoryResponse response = memory_in[i].receive();
-            array_accessed(response.tag);
-            coming.push_back({response.tag, cycle() + response.delay});
-        }
-        for (; !coming.empty() && coming.front().ready <= cycle(); coming.pop_front()) {
-            take_answer(coming.front().tag);
+    memory_held_.any_from(0, [&](std::uint32_t i) {
+        while (const MemoryResponse* response = memory_in[i].try_receive()) {
             progress = true;
+            array_accessed(response->tag);
+            if ((response->tag & tag_kind) == tag_store) continue;
+            const sim::Cycle ready = cycle() + response->delay;
+            coming_[i].push({response->tag, ready});
+            if (ready >= first_coming_) continue;
+            first_coming_ = ready;
+            if (ready > cycle()) wake_at(ready);
         }
+        return false;
+    });
+    if (first_coming_ > cycle()) return progress;
+    sim::Cycle next = never;
+    for (auto& coming : coming_) {
+        for (; !coming.empty() && coming.front().ready <= cycle(); coming.pop()) take_answer(coming.front().tag);
         if (!coming.empty()) next = std::min(next, coming.front().ready);
     }
-    if (next != ~sim::Cycle{0}) wake_at(next);
-    return progress;
+    first_coming_ = next;
+    if (next != never) wake_at(next);
+    return true;
 }
 
 void Rop::take_answer(std::uint32_t tag) {
@@ -246,7 +252,6 @@ void Rop::write_back_all() {
 
 // One dirty line per cycle; then what was evicted without becoming visible; then the answer to an in-band command.
 bool Rop::write_back_next() {
-    if (!writing_back_) return false;
     if (!has_room()) return false;
     const std::uint32_t lines = std::max({depth_tiles_.size(), colour_tiles_.size(), kbuffer_tiles_.size()});
     while (write_back_at_ < 3 * lines) {
@@ -286,7 +291,7 @@ void Rop::stream(std::uint64_t read_bytes, std::uint64_t write_bytes, bool resol
 }
 
 bool Rop::stream_next() {
-    if (stream_reads_ + stream_writes_ == 0 || requests_.size() + request_room > requests_.capacity()) return false;
+    if (requests_.size() + request_room > requests_.capacity()) return false;
     const bool read = stream_reads_ > 0 && stream_reads_ >= stream_writes_;
     if (read && stream_outstanding_ >= stream_window) return false;
     std::uint64_t& left = read ? stream_reads_ : stream_writes_;

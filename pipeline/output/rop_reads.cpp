@@ -83,51 +83,53 @@ void Rop::sample(const KBufferRead& read, std::uint64_t targets) {
     }
 }
 
-bool Rop::kbuffer_on_chip(std::uint32_t block) const {
+bool Rop::kbuffer_on_chip(const KBufferRead& read) const {
     return plan_->shader.tile_memory ||
-           (plan_->shader.visibility == Visibility::rop_cache && kbuffer_tiles_.holds(block));
+           (plan_->shader.visibility == Visibility::rop_cache && kbuffer_tiles_.holds(read.block, read.pixels));
 }
 
 // Takes reads of the texture units, round robin over the pipes. A sector in the cache answers at once when reads may
 // see it.
 bool Rop::accept_reads() {
     const auto pipes = static_cast<std::uint32_t>(reads_in.size());
-    const std::uint32_t first = next_pipe_;
     std::uint32_t accepted = 0;
-    for (std::uint32_t n = 0; n < pipes && accepted < params_.reads_per_clk; ++n) {
-        const std::uint32_t pipe = (first + n) % pipes;
+    reads_held_.any_from(next_pipe_, [&](std::uint32_t pipe) {
         auto& port = reads_in[pipe];
-        if (port.peek() == nullptr) continue;
+        if (port.peek() == nullptr) return false;
         if (free_jobs_.empty() || requests_.size() + 2 * request_room > requests_.capacity() || tile_reads_.full())
-            break;
-        const KBufferRead read = port.receive();
-        ++stats_.kbuffer_reads;
-        ++accepted;
-        next_pipe_ = (pipe + 1) % pipes;
-        if (kbuffer_on_chip(read.block)) {
-            tile_reads_.push({read, cycle() + request_latency()});
-            ++stats_.kbuffer_reads_from_tiles;
-            continue;
-        }
-        const std::uint32_t index = free_jobs_.back();
-        const std::uint64_t address = line_address(Use::kbuffer, read.block); // a sector is a line
-        free_jobs_.pop_back();
-        jobs_[index].read = read;
-        if (plan_->shader.atomic_reads) {
-            const std::uint32_t bytes = 64U * static_cast<std::uint32_t>(std::popcount(read.targets));
-            jobs_[index].outstanding = jobs_[index].unread = parts_of(address, bytes);
-            request(address, bytes, tag_read | index << 7U | all_target, MemoryClient::kbuffer_read, false, read.draw);
-            continue;
-        }
-        jobs_[index].outstanding = 0;
-        for (std::uint64_t left = read.targets; left != 0; left &= left - 1) {
-            const auto target = static_cast<std::uint32_t>(std::countr_zero(left));
-            const std::uint64_t at = address + std::uint64_t{64} * target;
-            jobs_[index].outstanding += parts_of(at, 64);
-            request(at, 64, tag_read | index << 7U | target, MemoryClient::kbuffer_read, false, read.draw);
-        }
-    }
+            return true;
+        accept_read(port.receive());
+        next_pipe_ = pipe + 1 < pipes ? pipe + 1 : 0;
+        return ++accepted == params_.reads_per_clk;
+    });
     return accepted != 0;
+}
+
+void Rop::accept_read(const KBufferRead& read) {
+    ++stats_.kbuffer_reads;
+    if (kbuffer_on_chip(read)) {
+        tile_reads_.push({read, cycle() + request_latency()});
+        ++stats_.kbuffer_reads_from_tiles;
+        return;
+    }
+    const std::uint32_t index = free_jobs_.back();
+    const std::uint64_t address = line_address(Use::kbuffer, read.block); // a sector is a line
+    free_jobs_.pop_back();
+    ReadJob& job = jobs_[index];
+    job.read = read;
+    if (plan_->shader.atomic_reads) {
+        const std::uint32_t bytes = 64U * static_cast<std::uint32_t>(std::popcount(read.targets));
+        job.outstanding = job.unread = parts_of(address, bytes);
+        request(address, bytes, tag_read | index << 7U | all_target, MemoryClient::kbuffer_read, false, read.draw);
+        return;
+    }
+    job.outstanding = 0;
+    for (std::uint64_t left = read.targets; left != 0; left &= left - 1) {
+        const auto target = static_cast<std::uint32_t>(std::countr_zero(left));
+        const std::uint64_t at = address + std::uint64_t{64} * target;
+        job.outstanding += parts_of(at, 64);
+        request(at, 64, tag_read | index << 7U | target, MemoryClient::kbuffer_read, false, read.draw);
+    }
 }
 
 std::uint32_t Rop::request_latency() const {
@@ -140,6 +142,7 @@ std::uint32_t Rop::return_latency() const {
 
 // A read reaches the array of the tile cache, takes what is there then, and carries it back.
 bool Rop::serve_tile_reads() {
+    if (tile_reads_.empty() && tile_answers_.empty()) return false;
     bool progress = false;
     for (; !tile_answers_.empty() && tile_answers_.front().ready <= cycle() && !answers_.full(); progress = true) {
         answers_.push(tile_answers_.front().read);

@@ -15,11 +15,11 @@ void TileCache::begin(std::uint32_t lines, const SectorShape& shape) {
     for (std::uint32_t entry = 0; entry < lines; ++entry) append(entry);
 }
 
-bool TileCache::holds(std::uint32_t block) const {
+bool TileCache::holds(std::uint32_t block, std::uint32_t pixels) const {
     const std::uint32_t entry = find(shape_.line_of(block));
     if (entry == none || entries_[entry].pending) return false;
-    const std::uint16_t sector = shape_.in_line(block, 15);
-    return (entries_[entry].valid & sector) == sector;
+    const std::uint16_t wanted = shape_.in_line(block, pixels);
+    return (entries_[entry].valid & wanted) == wanted;
 }
 
 void TileCache::complete(std::uint32_t block) {

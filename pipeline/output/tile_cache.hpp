@@ -66,8 +66,8 @@ class TileCache {
         while (entry != none && entries_[entry].line != line) entry = entries_[entry].chain;
         return entry;
     }
-    /// All pixels of the sector are on chip.
-    bool holds(std::uint32_t block) const;
+    /// These pixels of the sector, given as a mask of its four, are on chip.
+    bool holds(std::uint32_t block, std::uint32_t pixels) const;
 
     /// The entry that allocate() would replace: of those that no quad waits for, the one that waited longest; none when
     /// all are pinned.

@@ -14,7 +14,6 @@
 #include "sim/described.hpp"
 #include "sim/stats.hpp"
 
-#include <deque>
 #include <string>
 #include <vector>
 
@@ -54,7 +53,7 @@ class EarlyDepthTest final : public sim::Component {
     sim::In<QuadTask> quads_in{*this, "quads_in"};
     sim::Out<QuadTask> quads_out{*this, "quads_out"};
 
-    std::deque<sim::In<LastEntryBound>> bounds_in; ///< one per ROP partition, linked when the design rejects early
+    std::vector<sim::In<LastEntryBound>> bounds_in; ///< one per ROP partition, linked when the design rejects early
 
     /// @param partitions that send bounds; 0 = none do
     EarlyDepthTest(sim::Context context, const EarlyDepthParams& params, const PassContext& pass,

@@ -164,6 +164,11 @@ std::string meant_value(const KnownParameter& one, const ComparisonInput& input)
     return one.value;
 }
 
+// The sizes and rates of a design are assumed as those of the GPU are; its switches and rules make another design.
+bool sizes_a_design(const KnownParameter& one) {
+    return (one.field.type == "integer" || one.field.type == "number") && number_in(one.value).value_or(0) != 0;
+}
+
 } // namespace
 
 double zero_step(const std::string& unit) {
@@ -203,7 +208,7 @@ ParameterChoice choose_parameters(const SensitivityRequest& request, const Compa
         if (!request.parameters.empty() && !asked) continue;
         if (request.parameters.empty()) {
             const auto origin = input.gpu.origins.find(path);
-            if (origin == input.gpu.origins.end() || origin->second.origin != "assumed") continue;
+            if (origin == input.gpu.origins.end() ? !sizes_a_design(one) : origin->second.origin != "assumed") continue;
             if (std::string reason = why_not_read(input, built, path); !reason.empty()) {
                 choice.skipped.emplace_back(path, std::move(reason));
                 continue;

@@ -3,7 +3,6 @@
 #include "tests/support/sim_kit.hpp"
 
 #include <algorithm>
-#include <deque>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -53,8 +52,8 @@ std::vector<MemoryRequest> reads(std::uint32_t count, std::uint64_t address, std
 /// Sends requests, in order, to the memory partitions that hold their addresses, and notes every answer.
 class RopClient final : public sim::Component {
   public:
-    std::deque<sim::Out<MemoryRequest>> out;
-    std::deque<sim::In<MemoryResponse>> in;
+    std::vector<sim::Out<MemoryRequest>> out;
+    std::vector<sim::In<MemoryResponse>> in;
     struct Arrival {
         MemoryResponse response;
         Cycle cycle;

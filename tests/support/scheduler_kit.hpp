@@ -33,7 +33,7 @@ class MockBackEnd final : public sim::Component {
         pipeline::QuadTask task;
         sim::Cycle cycle;
     };
-    std::deque<sim::In<pipeline::QuadTask>> pipes_in;
+    std::vector<sim::In<pipeline::QuadTask>> pipes_in;
     sim::In<pipeline::QuadTask> order_in{*this, "order_in"};
     sim::Out<pipeline::Commit> commits_out{*this, "commits_out"}; ///< may stay unlinked
 

@@ -16,7 +16,7 @@ pipeline::GpuParams params_of(sim::Config& config) {
 }
 
 TEST(GpuLibrary, EveryFileIsComplete) {
-    const std::vector<std::string> origins{"public", "measured", "calibrated", "assumed"};
+    const std::vector<std::string> origins{"public", "measured", "calibrated", "assumed", "off"};
     for (const std::string& name : models::gpu_names()) {
         SCOPED_TRACE(name);
         sim::Config config = models::load_gpu(name);

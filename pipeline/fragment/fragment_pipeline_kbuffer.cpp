@@ -48,11 +48,12 @@ void FragmentPipeline::lookup_targets(std::uint16_t index) {
         stats_.l1.kbuffer_misses += parts;
         return;
     }
+    std::uint64_t missing = 0;
     for (std::uint32_t part = 0; part < parts; ++part) {
         const std::uint64_t targets = part_mask << part;
         const std::uint32_t line = l1_.find_kbuffer(thread.block, part);
         if (line == TextureCache::none) {
-            if (l1_.reserve_kbuffer(thread.block, part) != TextureCache::none) thread.lined |= targets;
+            missing |= std::uint64_t{1} << part;
             ++stats_.l1.kbuffer_misses;
             continue;
         }
@@ -69,6 +70,10 @@ void FragmentPipeline::lookup_targets(std::uint16_t index) {
                                   l1_.version(line, pixel), {cycle(), l1_.filled_at(line)});
     }
     thread.own &= ~thread.merged;
+    for (; missing != 0; missing &= missing - 1) {
+        const auto part = static_cast<std::uint32_t>(std::countr_zero(missing));
+        if (l1_.reserve_kbuffer(thread.block, part) != TextureCache::none) thread.lined |= part_mask << part;
+    }
 }
 
 bool FragmentPipeline::send_read(std::uint16_t index) {

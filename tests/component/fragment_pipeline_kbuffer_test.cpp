@@ -103,6 +103,28 @@ TEST(FragmentPipelineKBuffer, ReadsOfALineOnItsWayJoinIt) {
     }
 }
 
+TEST(FragmentPipelineKBuffer, AMissIsJoinedOnlyWhenALineWasLeftForIt) {
+    OneTarget pass;
+    for (const std::uint32_t x : {0U, 8U, 8U, 0U}) pass.quad(x, 0);
+    PipeBench bench(pass, {.texture = {.l1_bytes = 64, .l1_ways = 1}, .site = site(), .kbuffer_latency = 300});
+    bench.run();
+    EXPECT_EQ(bench.kbuffer->reads.size(), 3U); // the first quad's line is the only one
+    EXPECT_EQ(bench.pipe.stats().l1.kbuffer_misses, 3U);
+    EXPECT_EQ(bench.pipe.stats().l1.kbuffer_merged, 1U);
+}
+
+TEST(FragmentPipelineKBuffer, ReadsPastTheL1WantThePixelsOfTheQuadOnly) {
+    for (const bool past : {true, false}) {
+        OneTarget pass;
+        pass.quad(0, 0, 0b0101);
+        ShaderSite shader = site();
+        shader.bypass_l1 = past;
+        PipeBench bench(pass, {.site = shader});
+        bench.run();
+        EXPECT_EQ(bench.kbuffer->reads.at(0).pixels, past ? 0b0101 : 0b1111);
+    }
+}
+
 TEST(FragmentPipelineKBuffer, TextureUnitReadsOneTargetEveryFourCycles) {
     tests::QuadPass pass(64, 64, 1, 4, "rgbz"); // four targets
     for (std::uint32_t i = 0; i < 4; ++i) pass.quad(8 * i, 0);

@@ -71,6 +71,14 @@ TEST(HazardKinds, ReadsThatLookIntoTheTileCachePastTheL1AllTargetsAtOnceAreCoher
     }
 }
 
+// Where quads of a pixel may overtake, the one that was overtaken finds more than its predecessors: it misses nothing.
+TEST(HazardKinds, OvertakenQuadsOfCoherentReadsAreNoIncoherence) {
+    const RunResult run = discs().run(
+        "scoreboard", {"scoreboard.order_rule=false", "scoreboard.granularity=pixel", "scoreboard.side_buffer=512"});
+    EXPECT_EQ(run.hazards.of(HazardKind::incoherence), 0U);
+    EXPECT_GT(run.hazards.of(HazardClass::h1_in_flight), 0U);
+}
+
 // What is left then are copies that nobody told of the store: tiles not written back, lines of the texture cache.
 TEST(HazardKinds, PHY_H3_OneQuadAtATimeUntilItsStoreIsAppliedHasNoConcurrency) {
     for (const char* name : visibilities) {

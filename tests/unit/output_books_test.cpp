@@ -139,12 +139,12 @@ TEST(TileCacheTest, ReplacesTheLeastRecentlyUsedThatNoQuadWaitsFor) {
         cache.pin(entry);
         if (line == 5) cache.unpin(entry);
     }
-    EXPECT_FALSE(cache.holds(6)); // still on its way
+    EXPECT_FALSE(cache.holds(6, 15)); // still on its way
     EXPECT_EQ(cache.line(cache.victim()), 5U);
     cache.pin(cache.victim());
     EXPECT_EQ(cache.victim(), TileCache::none);
     cache.filled(cache.find(6));
-    EXPECT_TRUE(cache.holds(6));
+    EXPECT_TRUE(cache.holds(6, 15));
     for (const std::uint32_t line : {4U, 6U, 5U}) cache.unpin(cache.find(line));
     EXPECT_EQ(cache.line(cache.victim()), 4U);
     cache.pin(cache.find(4)); // used again
@@ -189,10 +189,13 @@ TEST(TileCacheTest, PixelsAreValidWhenStoredFetchedOrCompleted) {
     cache.allocate(entry, cache.shape().line_of(7), false, 0);
     cache.mark_dirty(entry, cache.shape().in_line(7, 0b0110));
     EXPECT_EQ(cache.dirty(entry), 0b0110'0000);
-    EXPECT_FALSE(cache.holds(7));
+    EXPECT_FALSE(cache.holds(7, 15));
+    EXPECT_TRUE(cache.holds(7, 0b0110)); // the pixels that a partial quad reads
+    EXPECT_TRUE(cache.holds(7, 0b0010));
+    EXPECT_FALSE(cache.holds(7, 0b0011));
     cache.complete(7);
-    EXPECT_TRUE(cache.holds(7));
-    EXPECT_FALSE(cache.holds(6));
+    EXPECT_TRUE(cache.holds(7, 15));
+    EXPECT_FALSE(cache.holds(6, 15));
     EXPECT_EQ(cache.dirty(entry), 0b0110'0000); // what was fetched is clean
     cache.complete(100);                        // not on chip
     cache.mark_clean(entry, 0b0010'0000);
@@ -215,7 +218,7 @@ TEST(TileCacheTest, OneThatIsLeftOutHoldsNothing) {
     EXPECT_EQ(cache.find(3), TileCache::none);
     cache.begin(0, {});
     EXPECT_EQ(cache.victim(), TileCache::none);
-    EXPECT_FALSE(cache.holds(3));
+    EXPECT_FALSE(cache.holds(3, 15));
 }
 
 TEST(ClearBitsTest, CountsTheSectorsOfThePictureUntilTheyAreWritten) {

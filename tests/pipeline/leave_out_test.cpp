@@ -207,7 +207,7 @@ nlohmann::ordered_json without_time(const nlohmann::ordered_json& counters) {
         const auto about = [&item](const char* word) { return item.key().find(word) != std::string::npos; };
         if (about("max") || about("queued") || about("in_flight") || about("wait") || about("residence") ||
             about("interval") || about("stalls") || about("row_") || about("conflicts") || about("turnarounds") ||
-            about("refreshes"))
+            about("refreshes") || about("inserted"))
             continue;
         kept[item.key()] = item.value().is_object() ? without_time(item.value()) : item.value();
     }

@@ -3,6 +3,7 @@
 
 #include "reports/images.hpp"
 #include "sim/check.hpp"
+#include "sim/field.hpp"
 
 #include <functional>
 #include <limits>

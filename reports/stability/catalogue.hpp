@@ -23,5 +23,17 @@ std::vector<Outcome> run(const std::vector<const Case*>& cases, const std::atomi
 
 // The groups, one per file.
 std::vector<Case> depth_format_cases();
+std::vector<Case> peeling_cases();
+std::vector<Case> kbuffer_cases();
+std::vector<Case> rasterization_cases();
+std::vector<Case> blending_cases();
+std::vector<Case> shadow_cases();
+std::vector<Case> shadow_search_cases();
+std::vector<Case> field_cases();
+std::vector<Case> distance_cases();
+std::vector<Case> geometry_cases();
+std::vector<Case> door_cases();
+std::vector<Case> frame_cases();
+std::vector<Case> hardware_cases();
 
 } // namespace reports::stability

@@ -20,7 +20,7 @@ inline Quad square_root(Quad x) {
 
 /// exp(x) - 1, without cancellation: the series of a small part, then (1 + e)^2 - 1 = e (2 + e) as often as halved.
 inline Quad exponential_less_one(Quad x) {
-    if (x < -12000) return -1; // below every double
+    if (x < -200) return -1; // but for what 113 bits cannot hold beside 1
     int halvings = 0;
     while (absolute(x) > Quad(1) / 1024) {
         x /= 2;
@@ -35,7 +35,10 @@ inline Quad exponential_less_one(Quad x) {
     return sum;
 }
 
-inline Quad exponential(Quad x) { return 1 + exponential_less_one(x); }
+inline Quad exponential(Quad x) {
+    if (x < -11000) return 0;
+    return x < 0 ? 1 / (1 + exponential_less_one(-x)) : 1 + exponential_less_one(x);
+}
 
 /// Newton's steps on exp(y) = x, for x > 0 in the range of double.
 inline Quad logarithm(Quad x) {

@@ -27,16 +27,6 @@ sim::ChannelConfig way_to(const MemoryController::Share& share, sim::Cycle laten
     return {latency, 1, static_cast<std::uint32_t>(on_the_way) + port_buffer};
 }
 
-// A refresh closes all rows: between two of them a row has to be opened and something moved, or nothing ever is.
-void check_refresh(const DramParams& dram) {
-    const double access = dram.rrd_ns + std::max(dram.rcd_read_ns + dram.cl_ns, dram.rcd_write_ns + dram.wl_ns);
-    if (dram.refi_ns != 0 && !(dram.refi_ns > dram.rfc_ns + access))
-        throw sim::InputError(fmt::format(
-            "memory.controller.dram.refi_ns: expected 0 or more than {} ns, a refresh and the way to the first "
-            "data behind it, got {}",
-            dram.rfc_ns + access, dram.refi_ns));
-}
-
 } // namespace
 
 MemorySystem::MemorySystem(sim::Simulation& simulation, const sim::Clock& core, const MemoryParams& params)
@@ -49,7 +39,6 @@ MemorySystem::MemorySystem(sim::Simulation& simulation, const sim::Clock& core, 
         throw sim::InputError(fmt::format(
             "memory.controller.dram.burst_bytes: expected a power of two up to memory.interleave ({}), got {}",
             params.interleave, params.controller.dram.burst_bytes));
-    check_refresh(params.controller.dram);
     share_ = {params.partitions, params.interleave, params.bandwidth / params.partitions, core.period};
     for (std::uint32_t i = 0; i < params.partitions; ++i)
         controllers_.push_back(std::make_unique<MemoryController>(

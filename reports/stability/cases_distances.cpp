@@ -268,6 +268,8 @@ void add_levels(std::vector<Case>& cases) {
                          pipeline::QuadTexcoords at;
                          at.u = {0.0F, next_up(1.0F) / 1024.0F, 0.0F, 0.0F};
                          finding.require(sampler.level_of_detail(at) > 0.0F, "above 0");
+                         at.u = {0.0F, 1.0F / 1024.0F, 0.0F, 0.0F};
+                         finding.require(sampler.level_of_detail(at) == 0.0F, "none at one texel");
                      }});
     cases.push_back({"level-of-detail.minified", Side::above, "pixels 1.5 to 1024 texels apart",
                      "log2 of the texels in 113 bits", "levels", bound, [](Finding& finding) {

@@ -86,12 +86,12 @@ void add_scene_doors(std::vector<Case>& cases) {
                              }
                          }));
     cases.push_back(door("matrices", "NaN and infinity in a model matrix",
-                         "refused when the scene is finished; nothing is drawn", [](Finding& finding) {
+                         "refused when the scene is finished, and before it is drawn", [](Finding& finding) {
                              for (const float bad : bad_values) {
                                  traces::Scene scene = triangle();
                                  scene.draws[0].instances[0][0][0] = bad;
-                                 finding.require(rasterized(scene, pixel_view(64, 64)).fragments == 0,
-                                                 "nothing is drawn");
+                                 finding.refuses([&] { rasterized(scene, pixel_view(64, 64)); },
+                                                 "matrices of finite numbers");
                                  finding.refuses([&] { traces::finish_scene(scene); }, "finite");
                              }
                          }));

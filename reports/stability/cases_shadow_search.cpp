@@ -29,20 +29,16 @@ void add_coverage(std::vector<Case>& cases) {
                                                       point(light, 0.003, 0, 10)));
                          }
                      }});
-    cases.push_back(
-        {"shadows.covered-twice", Side::above,
-         "occluders at two depths whose areas on the light overlap: more than all light is subtracted", "0, never less",
-         "of the light", 0.0, [](Finding& finding) {
-             const AreaLight light = unit_light(0.25);
-             // Texels by turns at 2 and at 9: those at 9 are thrown far larger than their distance apart.
-             const Layer mixed = [](double x, double y) {
-                 return (static_cast<int>(std::floor(x * 256)) + static_cast<int>(std::floor(y * 256))) % 2 == 0 ? 2.0
-                                                                                                                 : 9.0;
-             };
-             const ShadowMap map = map_of(light, floats_32, {mixed, plane(10), nothing, nothing});
-             for (const double x : {0.0, 0.01, 0.3})
-                 finding.error(visibility(map, all_texels, point(light, x, 0.1, 10)));
-         }});
+    cases.push_back({"shadows.covered-twice", Side::above,
+                     "occluders at two depths whose areas on the light overlap: more than all light is subtracted",
+                     "0, never less", "of the light", 0.0, [](Finding& finding) {
+                         const AreaLight light = unit_light(0.25);
+                         // Seen from 10, a texel at 4 spans 0.104 of the light: the middle 13 of a row cover it all.
+                         // Those at 2 beside them cover again what the middle has covered.
+                         const Layer mixed = [](double x, double) { return std::fabs(x) * 256 < 7 ? 4.0 : 2.0; };
+                         const ShadowMap map = map_of(light, floats_32, {mixed, plane(10), nothing, nothing});
+                         finding.error(visibility(map, all_texels, point(light, 0, 0, 10)));
+                     }});
     const auto samples = [](std::uint32_t most) {
         const AreaLight light = unit_light(0.5);
         const ShadowMap map = map_of(light, floats_32, {plane(5), plane(10)});

@@ -130,12 +130,12 @@ void add_layers(std::vector<Case>& cases) {
                      "1", "relative", 1e-6, [bias_of](Finding& finding) {
                          finding.error(bias_of({plane(4), plane(6)}, 0, ShadowFormat::rgba32f) - 1.0);
                      }});
-    cases.push_back({"shadows.midpoint-last", Side::at,
-                     "midpoint bias of the last captured layer, which has no successor", "0", "absolute", 0.0,
-                     [bias_of](Finding& finding) {
-                         finding.error(bias_of({plane(4), plane(6)}, 1, ShadowFormat::rgba32f));
-                         finding.error(bias_of({plane(4)}, 0, ShadowFormat::rgba16f));
-                     }});
+    cases.push_back(
+        {"shadows.midpoint-last", Side::at, "midpoint bias of the last captured layer, which has no successor", "0",
+         "absolute", 0.0, [bias_of](Finding& finding) {
+             finding.error(bias_of({plane(6), plane(4)}, 1, ShadowFormat::rgba32f)); // the next texel begins at 6
+             finding.error(bias_of({plane(4)}, 0, ShadowFormat::rgba16f));
+         }});
     cases.push_back(
         {"shadows.midpoint-sentinel", Side::above, "midpoint bias before an empty layer: half way to the far sentinel",
          "finite, and no occluder for what lies in front of it: (65504 - 4) / 2", "absolute", 0.0,

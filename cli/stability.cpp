@@ -5,6 +5,7 @@
 #include "cli/measuring.hpp"
 #include "reports/result.hpp"
 #include "reports/stability/catalogue.hpp"
+#include "reports/stability/conditioning.hpp"
 #include "reports/stability/report.hpp"
 #include "sim/check.hpp"
 
@@ -17,7 +18,8 @@ void stability(const StabilityCommand& command) {
     const bool pictures = !command.directory.empty() && !command.no_images;
     if (pictures) reports::require_images();
     const auto outcomes = stability::run(stability::cases_matching(command.filter), &stop_requested());
-    const std::vector<stability::Curve> curves;
+    // Curves are of formulas, not of cases: a choice of cases is asked for without them.
+    const auto curves = command.filter.empty() ? stability::conditioning_curves() : std::vector<stability::Curve>{};
     const auto document = stability::json_of(outcomes, curves);
     std::string written;
     if (!command.directory.empty()) {

@@ -327,6 +327,11 @@ void early_reject(Finding& finding, float depth) {
         const pipeline::RunResult run = replay.run("peel-rop", {rule});
         finding.error(static_cast<double>(run.wrong_pixels));
         for (std::size_t i = 0; i < 4; ++i) finding.error(ulps(run.kbuffer[i], depths[i]));
+        std::uint64_t rejected = 0;
+        for (const pipeline::PassResult& pass : run.passes)
+            if (pass.counters.contains("early_depth"))
+                rejected += pass.counters.at("early_depth").at("fragments_beyond").get<std::uint64_t>();
+        finding.require(rejected > 0, "some are rejected early");
     }
 }
 

@@ -29,7 +29,6 @@ SECONDS = 300  # of a run, after which a mutation counts as one that hangs
 HEADER = """// Which of the mutations is active: ROPSIM_MUTANT of the environment.
 #pragma once
 #include <cstdlib>
-#include <type_traits>
 inline int ropsim_active_mutant() {
     static const int number = [] {
         const char* text = std::getenv("ROPSIM_MUTANT");
@@ -38,7 +37,7 @@ inline int ropsim_active_mutant() {
     return number;
 }
 constexpr bool ropsim_mutant(int number) {
-    return !std::is_constant_evaluated() && ropsim_active_mutant() == number;
+    return !__builtin_is_constant_evaluated() && ropsim_active_mutant() == number;
 }
 """
 

@@ -187,11 +187,9 @@ void add_sensitivity(CLI::App& command, SensitivityCommand& options) {
 
 void add_stability(CLI::App& command, StabilityCommand& options) {
     command
-        .add_option("--filter", options.filter,
-                    "Cases to run: ids, with * for any characters and ? for one, separated by commas (default: all)")
-        ->type_name("PATTERNS");
-    command.add_option("--out", options.directory, "Folder for stability.json, tables and a page with curves")
-        ->type_name("DIR");
+        .add_option("--filter", options.filter, "Cases to run: ids with * and ?, separated by commas (default: all)")
+        ->type_name("IDS");
+    command.add_option("--out", options.directory, "Folder for stability.json, tables and a page")->type_name("DIR");
     command.add_flag("--json", options.json, "Print one JSON document on standard output, and nothing else");
     command.add_flag("--no-images", options.no_images, "Write no pictures (OpenImageIO is not loaded)");
     command.footer(stability_help);
@@ -294,7 +292,6 @@ struct Parser {
                         sensitivity);
 
         add_stability(*app.add_subcommand("stability", "Stiff and extreme cases beside exact arithmetic"), stability);
-
         command = app.add_subcommand("describe", "Say what can be chosen and what the numbers mean");
         command
             ->add_option("topic", describe.topic,

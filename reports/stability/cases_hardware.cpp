@@ -106,7 +106,7 @@ void add_queues(std::vector<Case>& cases) {
                  "geometry.vertex_fetch.vertices_in_flight=1", "geometry.vertex_fetch.lines_in_flight=1"}));
     cases.push_back(machine(
         "queue-4096", Side::above, "queues of 4,096 places",
-        {"rop.queue=4096", "crossbar.queue=4096", "memory.controller.queue=65536", "fragment.quads_in_flight=4096"}));
+        {"rop.queue=4096", "crossbar.queue=4096", "memory.controller.queue=4096", "fragment.quads_in_flight=1024"}));
     cases.push_back(machine("in-flight-1", Side::at, "one quad in flight per pipe",
                             {"fragment.quads_in_flight=1", "reorder_buffer.quads=1"}));
     cases.push_back(

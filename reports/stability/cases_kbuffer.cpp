@@ -315,10 +315,10 @@ void add_csg(std::vector<Case>& cases) {
                      }});
 }
 
-/// Four layers, the deepest at 0.5, and 60 fragments at one depth behind them: what a unit that rejects early keeps.
+/// Four layers, the deepest at 0.5, and 2,000 fragments at one depth behind them: what a unit that rejects early keeps.
 void early_reject(Finding& finding, float depth) {
     std::vector<float> depths{0.2F, 0.3F, 0.4F, 0.5F};
-    depths.insert(depths.end(), 60, depth);
+    depths.insert(depths.end(), 2000, depth); // more than are on their way when the first bounds come back
     const Replay replay(layers_of(2, 2, depths), {.width = 2, .height = 2, .knobs = {"k=4", "entry=z"}, .threads = 1});
     for (std::size_t i = 0; i < depths.size(); ++i)
         depths[i] = replay.streams[0].depths[i * 2][0]; // two triangles each
@@ -337,14 +337,14 @@ void early_reject(Finding& finding, float depth) {
 
 void add_early_reject(std::vector<Case>& cases) {
     cases.push_back({"kbuffer.early-reject-nearer", Side::below,
-                     "early rejection against the deepest entry: 60 fragments one float nearer than it",
+                     "early rejection against the deepest entry: 2,000 fragments one float nearer than it",
                      "no wrong pixel: none may be rejected", "ulp", 0.0,
                      [](Finding& finding) { early_reject(finding, next_down(0.5F)); }});
     cases.push_back({"kbuffer.early-reject-equal", Side::at,
-                     "early rejection against the deepest entry: 60 fragments as deep", "no wrong pixel", "ulp", 0.0,
+                     "early rejection against the deepest entry: 2,000 fragments as deep", "no wrong pixel", "ulp", 0.0,
                      [](Finding& finding) { early_reject(finding, 0.5F); }});
     cases.push_back({"kbuffer.early-reject-farther", Side::above,
-                     "early rejection against the deepest entry: 60 fragments one float behind it", "no wrong pixel",
+                     "early rejection against the deepest entry: 2,000 fragments one float behind it", "no wrong pixel",
                      "ulp", 0.0, [](Finding& finding) { early_reject(finding, next_up(0.5F)); }});
 }
 

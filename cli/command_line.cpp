@@ -185,6 +185,16 @@ void add_sensitivity(CLI::App& command, SensitivityCommand& options) {
     command.footer(sensitivity_help);
 }
 
+void add_stability(CLI::App& command, StabilityCommand& options) {
+    command
+        .add_option("--filter", options.filter, "Cases to run: ids with * and ?, separated by commas (default: all)")
+        ->type_name("IDS");
+    command.add_option("--out", options.directory, "Folder for stability.json, tables and a page")->type_name("DIR");
+    command.add_flag("--json", options.json, "Print one JSON document on standard output, and nothing else");
+    command.add_flag("--no-images", options.no_images, "Write no pictures (OpenImageIO is not loaded)");
+    command.footer(stability_help);
+}
+
 constexpr const char* usual_fidelity = "estimate or detailed (default detailed)";
 
 void add_measure(CLI::App& command, MeasureCommand& options, const char* footer,
@@ -281,11 +291,12 @@ struct Parser {
         add_sensitivity(*app.add_subcommand("sensitivity", "How much a comparison depends on what is assumed"),
                         sensitivity);
 
+        add_stability(*app.add_subcommand("stability", "Stiff and extreme cases beside exact arithmetic"), stability);
         command = app.add_subcommand("describe", "Say what can be chosen and what the numbers mean");
         command
-            ->add_option(
-                "topic", describe.topic,
-                "gpus, designs, programs, workloads, generators, preparations, studies, params, stats, or a name")
+            ->add_option("topic", describe.topic,
+                         "gpus, designs, programs, workloads, generators, preparations, studies, stability, params, "
+                         "stats, or a name")
             ->type_name("TOPIC");
         command->add_flag("--json", describe.json, "Print one JSON document");
         command->add_flag("--names", describe.names, "Print names only, one a line");
@@ -304,6 +315,7 @@ struct Parser {
     CalibrateCommand calibrate;
     StudyCommand study;
     SensitivityCommand sensitivity;
+    StabilityCommand stability;
     DescribeCommand describe;
     bool version = false;
 };
@@ -382,6 +394,7 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
     if (app.got_subcommand("calibrate")) return parser.calibrate;
     if (app.got_subcommand("study")) return parser.study;
     if (app.got_subcommand("sensitivity")) return parser.sensitivity;
+    if (app.got_subcommand("stability")) return parser.stability;
     if (app.got_subcommand("describe")) return parser.describe;
     throw UsageError(
         fmt::format("expected a subcommand: {}; see ropsim --help", fmt::join(subcommand_names(app), ", ")));

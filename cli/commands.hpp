@@ -14,6 +14,7 @@ void validate(const ValidateCommand& command);
 void calibrate(const CalibrateCommand& command);
 void study(const StudyCommand& command);
 void sensitivity(const SensitivityCommand& command);
+void stability(const StabilityCommand& command);
 void describe(const DescribeCommand& command);
 
 } // namespace cli

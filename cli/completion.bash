@@ -30,7 +30,7 @@ _ropsim() {
     local frame="--gpu --workload --k --entry --program --size --samples --camera --light --seed --threads --set --out --json --no-images --help"
     COMPREPLY=()
     if ((COMP_CWORD == 1)); then
-        _ropsim_words "compare run truth accuracy geometry validate calibrate study sensitivity describe --help --version"
+        _ropsim_words "compare run truth accuracy geometry validate calibrate study sensitivity stability describe --help --version"
         return
     fi
     case $before in
@@ -52,6 +52,7 @@ _ropsim() {
         --export) _ropsim_files glb; return ;;
         --out | --write) mapfile -t COMPREPLY < <(compgen -d -- "$word"); compopt -o filenames; return ;;
         --parameters) _ropsim_list "$(_ropsim_names params)"; return ;;
+        --filter) _ropsim_list "$(_ropsim_names stability)"; return ;;
         --factor | --equal-area) return ;;
         --k | --seed | --threads | --layers | --light | --rays | --sweep | --averaged) return ;;
     esac
@@ -73,6 +74,7 @@ _ropsim() {
         validate) [[ $word == -* ]] && _ropsim_words "--leave-one-out --out $measure" || _ropsim_words "geometry peeling" ;;
         calibrate) [[ $word == -* ]] && _ropsim_words "--write --folds --seed --out $measure" || _ropsim_words "geometry peeling" ;;
         study) [[ $word == -* ]] && _ropsim_words "--out $measure" || _ropsim_words "$(_ropsim_names studies)" ;;
+        stability) _ropsim_words "--filter --out --json --no-images --help" ;;
         describe)
             if [[ $word == -* ]]; then
                 _ropsim_words "--names --json --help"

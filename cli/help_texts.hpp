@@ -13,6 +13,7 @@ inline constexpr const char* general_help = R"(Examples:
   ropsim validate geometry                     the model beside published measurements
   ropsim study batching                        one question, a table and a plot
   ropsim sensitivity scene.glb                 which assumptions a comparison depends on
+  ropsim stability                             stiff and extreme cases, each beside exact arithmetic
   ropsim describe designs                      what can be chosen, and what it means)";
 
 inline constexpr const char* compare_help = R"(Examples:
@@ -63,6 +64,12 @@ inline constexpr const char* sensitivity_help = R"(Examples:
   ropsim sensitivity scene.glb --size 256x256 --out sensitivity
   ropsim sensitivity scene.glb --parameters rop.queue,memory --factor 4
   ropsim sensitivity gen:discs --designs 'interlock,blender,blender?rop.queue=128' --json)";
+
+inline constexpr const char* stability_help = R"(Examples:
+  ropsim stability                       all cases; exit status 1 when one fails
+  ropsim stability --filter 'half.*,peeling.eps-*'
+  ropsim stability --out stability       a table, and a page with curves and pictures
+  ropsim describe stability              the cases, with what is expected of each)";
 
 inline constexpr const char* describe_help = R"(Examples:
   ropsim describe                      an overview

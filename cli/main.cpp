@@ -22,6 +22,7 @@ struct Dispatch {
     void operator()(const cli::CalibrateCommand& command) const { cli::calibrate(command); }
     void operator()(const cli::StudyCommand& command) const { cli::study(command); }
     void operator()(const cli::SensitivityCommand& command) const { cli::sensitivity(command); }
+    void operator()(const cli::StabilityCommand& command) const { cli::stability(command); }
     void operator()(const cli::DescribeCommand& command) const { cli::describe(command); }
     void operator()(const cli::ShowText& show) const { cli::print(show.text); }
 };

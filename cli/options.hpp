@@ -110,6 +110,13 @@ struct SensitivityCommand {
     bool json = false;
 };
 
+struct StabilityCommand {
+    std::string filter;    ///< patterns of ids, separated by commas; empty: all
+    std::string directory; ///< of --out
+    bool json = false;
+    bool no_images = false;
+};
+
 /// validate, calibrate and study: what to do it with, and on which GPUs.
 struct MeasureCommand {
     std::string target;
@@ -138,7 +145,7 @@ struct ShowText {
 
 using Command =
     std::variant<CompareCommand, RunCommand, TruthCommand, AccuracyCommand, GeometryCommand, SensitivityCommand,
-                 ValidateCommand, CalibrateCommand, StudyCommand, DescribeCommand, ShowText>;
+                 ValidateCommand, CalibrateCommand, StudyCommand, StabilityCommand, DescribeCommand, ShowText>;
 
 /// The request that the options stand for; for `designs` see CompareCommand. Throws sim::InputError when a number or
 /// size is none.

@@ -7,6 +7,7 @@
 #include "models/programs/library.hpp"
 #include "pipeline/gpu_params.hpp"
 #include "reports/counter_reference.hpp"
+#include "reports/stability/catalogue.hpp"
 #include "reports/study.hpp"
 #include "ropsim_build.hpp"
 #include "traces/generators.hpp"
@@ -131,6 +132,13 @@ std::vector<CatalogueEntry> studies() {
     return entries;
 }
 
+std::vector<CatalogueEntry> stability_cases() {
+    std::vector<CatalogueEntry> entries;
+    for (const stability::Case& one : stability::catalogue())
+        entries.push_back({"stability", one.id, one.subject, {}, "expected: " + one.expectation});
+    return entries;
+}
+
 CatalogueEntry field_entry(std::string topic, std::string name, const sim::FieldInfo& field) {
     CatalogueEntry entry{std::move(topic), std::move(name), detail_text(field), {}};
     return entry;
@@ -183,6 +191,7 @@ const std::vector<CatalogueTopic>& catalogue_topics() {
         {"generators", "scenes made by rule (SCENE)", true, generators},
         {"preparations", "what can be done to meshes (--prepare of ropsim geometry)", true, preparations},
         {"studies", "questions with a sweep, a table and a plot (ropsim study)", true, studies},
+        {"stability", "stiff and extreme cases (ropsim stability)", false, stability_cases},
         {"params", "every number of GPU, designs and workloads (--set)", false, parameters},
         {"stats", "every counter of every stage", false, counters}};
     return topics;

@@ -36,6 +36,8 @@ DramChannel::DramChannel(const DramParams& params, double bandwidth, sim::Time c
       faw_(fine_of_ns(params.faw_ns)),
       refi_(fine_of_ns(params.refi_ns)),
       rfc_(fine_of_ns(params.rfc_ns)),
+      access_(rrd_ + faw_ + std::max(turn_[reads], turn_[writes]) +
+              std::max(rcd_[reads] + command_[reads], rcd_[writes] + command_[writes]) + 1),
       next_refresh_(refi_ == 0 ? never : refi_),
       write_queue_(write_queue),
       banks_(params.banks) {
@@ -218,7 +220,9 @@ void DramChannel::refresh(Fine now) {
         bank.closes = end;
         choose(bank, std::max(now, end));
     }
-    next_refresh_ += refi_;
+    // One that came late, behind rows that had to close, leaves time for an access before the next: devices let
+    // refreshes be postponed (JEDEC), and nothing would be moved between refreshes that follow each other at once.
+    next_refresh_ = std::max(next_refresh_ + refi_, end + access_);
     next_ = 0;
     ++events_.refreshes;
 }

@@ -136,6 +136,7 @@ class DramChannel {
     std::array<Fine, 2> rcd_, command_; ///< by direction: activation to command, command to data
     std::array<Fine, 2> turn_;          ///< idle bus before data of this direction that follow others
     Fine rp_, ras_, wr_, rrd_, faw_, refi_, rfc_;
+    Fine access_; ///< no way from a refresh to the first data behind it is longer
 
     Fine bus_free_ = 0;
     Fine next_ = 0;         ///< no transfer starts before; 0: unknown

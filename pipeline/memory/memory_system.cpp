@@ -39,14 +39,6 @@ MemorySystem::MemorySystem(sim::Simulation& simulation, const sim::Clock& core, 
         throw sim::InputError(fmt::format(
             "memory.controller.dram.burst_bytes: expected a power of two up to memory.interleave ({}), got {}",
             params.interleave, params.controller.dram.burst_bytes));
-    const DramParams& dram = params.controller.dram;
-    const double busy = dram.rfc_ns + dram.rp_ns + dram.ras_ns + std::max(dram.rcd_read_ns, dram.rcd_write_ns) +
-                        std::max(dram.cl_ns, dram.wl_ns) + dram.burst_bytes / (params.bandwidth / params.partitions);
-    if (dram.refi_ns != 0 && dram.refi_ns <= busy)
-        throw sim::InputError(fmt::format(
-            "memory.controller.dram.refi_ns: expected 0 or more than {:.4g}, in which a refresh and a transfer from a "
-            "row that was closed fit, got {:.4g}",
-            busy, dram.refi_ns));
     share_ = {params.partitions, params.interleave, params.bandwidth / params.partitions, core.period};
     for (std::uint32_t i = 0; i < params.partitions; ++i)
         controllers_.push_back(std::make_unique<MemoryController>(

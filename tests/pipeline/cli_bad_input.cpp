@@ -39,7 +39,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{{},
                 2,
                 "expected a subcommand: compare, run, truth, accuracy, geometry, validate, calibrate, study, "
-                "sensitivity, describe"},
+                "sensitivity, stability, describe"},
         Mistake{{"compar"}, 2, "did you mean 'compare'?"}, Mistake{{"compare"}, 2, "scene is required"},
         Mistake{{"compare", "gen:stack", "--desings", "x"}, 2, "did you mean '--designs'?"},
         Mistake{{"compare", "gen:stack", "more"}, 2, "unexpected argument 'more'"},
@@ -56,6 +56,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{{"sensitivity", "gen:stack", "--size", "16x16", "--parameters", "rop.quee"},
                 1,
                 "did you mean 'rop.queue'?"},
+        Mistake{{"stability", "--filter", "half.tye"}, 1, "did you mean 'half.tie'?"},
         Mistake{{"describe", "scorebord"}, 1, "did you mean 'scoreboard'?"}));
 
 INSTANTIATE_TEST_SUITE_P(

@@ -4,6 +4,7 @@
 #include "models/kbuffers/library.hpp"
 #include "pipeline/functional/frame_streams.hpp"
 #include "pipeline/machine.hpp"
+#include "reports/stability/replay.hpp"
 #include "sim/config.hpp"
 #include "traces/camera.hpp"
 #include "traces/scene.hpp"
@@ -14,33 +15,17 @@
 
 namespace support {
 
-struct ReplayOptions {
-    std::uint32_t width = 128, height = 128;
-    std::string workload = "transparency";
-    std::string camera = "auto";
-    std::vector<std::string> knobs = {}; ///< of the workload: "k=4", "entry=z"
-    unsigned threads = 0;                ///< of the functional front end; 0 = all cores
-    std::uint32_t samples = 1;           ///< of a pixel
-};
+using reports::stability::ReplayOptions;
 
-class Replay {
+class Replay : public reports::stability::Replay {
   public:
-    explicit Replay(const std::string& scene, const ReplayOptions& options = {});
-    explicit Replay(const traces::Scene& scene, const ReplayOptions& options = {});
-
-    /// `settings` are assignments as on the command line: "existing.visibility=rop_cache", "fragment.pipes=1".
-    pipeline::RunResult run(const std::string& design, const std::vector<std::string>& settings = {},
-                            pipeline::MachineOptions options = {}) const;
+    using reports::stability::Replay::Replay;
 
     /// The designs that can run the frame's program, or all where it has none.
     std::vector<std::string> designs() const;
 
     /// The stream of the k-buffer pass.
     const pipeline::FragmentStream& kbuffer_stream() const;
-
-    pipeline::Frame frame;
-    std::vector<pipeline::FragmentStream> streams;
-    pipeline::ReferenceImage reference;
 };
 
 /// What a pass hands on whose tasks are whole groups of sample quads, if `multisampled`; else sample quads.

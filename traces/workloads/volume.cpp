@@ -62,7 +62,8 @@ models::TransferFunction transfer_of(const VolumeParams& params, ScalarRange ran
     constexpr int points = 9; // straight pieces of a colour scale that bends in the middle
     models::TransferFunction transfer;
     // A field that is the same everywhere has one colour; where it lies in the table is of no account.
-    const bool constant = !(range.lo < range.hi);
+    const float step = (range.hi - range.lo) / (points - 1);
+    const bool constant = !(range.lo + step > range.lo && range.hi - step < range.hi);
     if (constant) range.hi = range.lo + std::max(1.0F, std::abs(range.lo));
     for (int i = 0; i < points; ++i) {
         const float share = static_cast<float>(i) / (points - 1);

@@ -1,0 +1,42 @@
+#include "reports/stability/replay.hpp"
+
+#include "models/kbuffers/library.hpp"
+#include "pipeline/functional/frame_streams.hpp"
+#include "sim/config.hpp"
+#include "traces/camera.hpp"
+#include "traces/submission.hpp"
+#include "traces/workloads.hpp"
+
+namespace reports::stability {
+
+Replay::Replay(const std::string& scene, const ReplayOptions& options) : Replay(traces::load_scene(scene), options) {}
+
+Replay::Replay(const traces::Scene& scene, const ReplayOptions& options) {
+    traces::WorkloadOptions knobs;
+    for (const std::string& knob : options.knobs) knobs.set(knob);
+    pipeline::View view = traces::make_view(scene, options.camera, options.width, options.height);
+    view.samples = options.samples;
+    frame = traces::build_frame(scene, view, options.workload, knobs);
+    pipeline::FrontEndOptions front_end;
+    front_end.threads = options.threads;
+    streams = pipeline::rasterize_frame(frame, front_end);
+    reference = pipeline::run_reference(frame, streams, 1, options.threads);
+}
+
+pipeline::RunResult Replay::run(const std::string& design, const std::vector<std::string>& settings,
+                                pipeline::MachineOptions options) const {
+    sim::Config config;
+    for (const std::string& setting : settings) config.set(setting);
+    pipeline::GpuParams gpu;
+    config.read("", gpu);
+    models::check_design_sections(config);
+    const auto model = models::make_design(design, config);
+    config.expect_all_used();
+    if (!model->submission().changes()) return pipeline::Machine(gpu, frame, streams, *model, options).run(reference);
+    const pipeline::Frame other = traces::submitted(frame, model->submission());
+    const auto other_streams = pipeline::rasterize_frame(other);
+    return pipeline::Machine(gpu, other, other_streams, *model, options)
+        .run(pipeline::run_reference(other, other_streams));
+}
+
+} // namespace reports::stability

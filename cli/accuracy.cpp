@@ -24,18 +24,16 @@ void accuracy(const AccuracyCommand& command) {
     const reports::AccuracyRequest request = request_of(command);
     if (request.pictures) reports::require_images();
     const reports::Accuracy result = measure(request);
-    for (const std::string& note : result.notes) complain(note);
     const auto document = reports::accuracy_json(result);
     std::string written;
     if (!command.output.directory.empty()) {
-        const FilesInProgress keep_alive;
-        reports::make_directory(command.output.directory);
+        reports::begin_report_folder(command.output.directory);
         reports::write_accuracy_pictures(result, command.output.directory);
         written = "\n" + write_tables(command.output.directory, "accuracy.json", document,
-                                      {reports::accuracy_table(result)}, reports::accuracy_page(result));
+                                      {reports::accuracy_table(result)}, reports::accuracy_page(result), true);
     }
-    print(command.output.json ? reports::result_text(document)
-                              : reports::accuracy_text(result, terminal_style()) + written);
+    print_result(command.output.json, reports::result_text(document), reports::accuracy_text(result, terminal_style()),
+                 reports::remarks(result), written);
 }
 
 } // namespace cli

@@ -82,7 +82,6 @@ void calibrate(const CalibrateCommand& command) {
     const auto calibrations = calibrations_of(command);
     std::string written;
     if (!command.directory.empty()) {
-        const FilesInProgress keep_alive;
         written = fmt::format("\nWritten: {}\n",
                               fmt::join(reports::write_calibration(calibrations, command.directory), ", "));
     }

@@ -286,6 +286,9 @@ struct Parser {
             ->type_name("STUDY");
         command->add_option("--out", study.directory, "Folder for the table and a page with the plot")
             ->type_name("DIR");
+        command->add_flag("--resume,!--no-resume", study.resume,
+                          "Take points that were finished before from the folder of --out (default), or compute all "
+                          "of them again");
         add_measure(*command, study, study_help);
 
         add_sensitivity(*app.add_subcommand("sensitivity", "How much a comparison depends on what is assumed"),

@@ -5,9 +5,12 @@
 
 namespace cli {
 
+inline constexpr int status_good = 0, status_no = 4; ///< exit statuses
+
 void compare(const CompareCommand& command);
 void run(const RunCommand& command);
-void truth(const TruthCommand& command);
+/// status_no where --check finds the frame in submission order wrong, or nothing to compare.
+int truth(const TruthCommand& command);
 void accuracy(const AccuracyCommand& command);
 void geometry(const GeometryCommand& command);
 void validate(const ValidateCommand& command);

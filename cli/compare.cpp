@@ -6,10 +6,12 @@
 #include "cli/interruption.hpp"
 #include "cli/progress_line.hpp"
 #include "reports/hazard_text.hpp"
+#include "reports/remarks.hpp"
 #include "reports/report_files.hpp"
 #include "reports/result.hpp"
 #include "reports/terminal_table.hpp"
 #include "reports/timeline.hpp"
+#include "sim/counted.hpp"
 
 #include <fmt/format.h>
 
@@ -24,17 +26,17 @@ reports::Comparison compute(const reports::ComparisonRequest& request, sim::Obse
 }
 
 std::string write(const reports::Comparison& comparison, const OutputOptions& output) {
-    const FilesInProgress keep_alive;
     return reports::write_report(comparison, output.directory, {!output.no_images, &stop_requested()});
 }
 
 std::string write_timeline(const reports::Timeline& timeline, const OutputOptions& output) {
-    const FilesInProgress keep_alive;
     const std::filesystem::path path = std::filesystem::path(output.directory) / "timeline.json";
     timeline.write(path);
     const std::uint64_t left_out = timeline.slices_left_out();
     return fmt::format("The timeline is {}{}\n", path.string(),
-                       left_out == 0 ? "" : fmt::format("; its last {} slices are left out", left_out));
+                       left_out == 0 ? ""
+                                     : fmt::format("; its last {} {} left out", sim::counted(left_out, "slice"),
+                                                   left_out == 1 ? "is" : "are"));
 }
 
 std::string blank_behind(const std::string& text) { return text.empty() ? text : text + "\n"; }
@@ -49,10 +51,8 @@ void simulate(const reports::ComparisonRequest& request, const OutputOptions& ou
     std::string written;
     if (!output.directory.empty()) written = write(comparison, output) + "\n";
     if (timeline) written += write_timeline(*timeline, output);
-    if (output.json)
-        print(reports::result_text(reports::result_json(comparison)));
-    else
-        print(present(comparison, terminal_style()) + written);
+    print_result(output.json, output.json ? reports::result_text(reports::result_json(comparison)) : "",
+                 output.json ? "" : present(comparison, terminal_style()), reports::remarks(comparison), written);
 }
 
 void compare(const CompareCommand& command) {

@@ -49,9 +49,9 @@ std::string details_text(const CatalogueEntry& entry, reports::TerminalStyle sty
     return text;
 }
 
-std::string names_text(const std::vector<CatalogueEntry>& entries) {
+std::string names_text(const std::vector<std::string>& names) {
     std::string text;
-    for (const CatalogueEntry& entry : entries) text += entry.name + "\n";
+    for (const std::string& name : names) text += name + "\n";
     return text;
 }
 
@@ -71,20 +71,20 @@ const CatalogueTopic* find_topic(const std::string& name) {
 }
 
 void describe_overview(const DescribeCommand& command) {
+    if (!command.json && !command.names) return print(overview_text(terminal_style()));
+    std::vector<std::string> names;
+    for (const CatalogueTopic& topic : reports::catalogue_topics()) names.emplace_back(topic.name);
+    if (command.names) return print(names_text(names));
     nlohmann::ordered_json all = nlohmann::ordered_json::object();
-    std::string names;
-    for (const CatalogueTopic& topic : reports::catalogue_topics()) {
+    for (const CatalogueTopic& topic : reports::catalogue_topics())
         all[std::string(topic.name)] = reports::catalogue_json(topic.entries());
-        names += std::string(topic.name) + "\n";
-    }
-    print(command.json ? all.dump(2) + "\n" : command.names ? names : overview_text(terminal_style()));
+    print(all.dump(2) + "\n");
 }
 
 void describe_topic(const DescribeCommand& command, const CatalogueTopic& topic) {
+    if (command.names) return print(names_text(topic.names()));
     const auto entries = topic.entries();
-    print(command.json    ? reports::catalogue_json(entries).dump(2) + "\n"
-          : command.names ? names_text(entries)
-                          : list_text(entries, terminal_style()));
+    print(command.json ? reports::catalogue_json(entries).dump(2) + "\n" : list_text(entries, terminal_style()));
 }
 
 } // namespace
@@ -95,7 +95,11 @@ void describe(const DescribeCommand& command) {
     const auto entries = reports::catalogue_find(command.topic);
     if (entries.empty()) unknown(command.topic);
     if (command.json) return print(reports::catalogue_json(entries).dump(2) + "\n");
-    if (command.names) return print(names_text(entries));
+    if (command.names) {
+        std::vector<std::string> names;
+        for (const CatalogueEntry& entry : entries) names.push_back(entry.name);
+        return print(names_text(names));
+    }
     // What lies below a path is a list; one thing is described in full.
     const bool list =
         std::all_of(entries.begin(), entries.end(), [](const auto& entry) { return entry.details.empty(); });

@@ -5,6 +5,7 @@
 #include "reports/geometry/json.hpp"
 #include "reports/geometry/tables.hpp"
 #include "reports/geometry/text.hpp"
+#include "reports/remarks.hpp"
 #include "reports/result.hpp"
 #include "sim/check.hpp"
 #include "traces/gltf_export.hpp"
@@ -19,7 +20,6 @@ namespace {
 std::string export_scene(const GeometryCommand& command) {
     if (command.export_to.empty()) return {};
     if (command.prepare.empty()) throw sim::InputError("--export: expected a --prepare whose outcome is to be written");
-    const FilesInProgress keep_alive;
     const traces::PreparedScene prepared = traces::prepare_scene(traces::load_scene(command.scene), command.prepare);
     traces::export_glb(prepared.scene, command.export_to);
     return fmt::format("The prepared scene is {}\n", command.export_to);
@@ -37,8 +37,8 @@ void geometry(const GeometryCommand& command) {
     std::string written = exported;
     if (!command.directory.empty())
         written += write_tables(command.directory, "geometry.json", document, reports::advice_tables(advice), {});
-    print(command.json ? reports::result_text(document)
-                       : reports::advice_text(advice, terminal_style()) + (written.empty() ? "" : "\n" + written));
+    print_result(command.json, reports::result_text(document), reports::advice_text(advice, terminal_style()),
+                 reports::each_once(advice.notes), written.empty() ? "" : "\n" + written);
 }
 
 } // namespace cli

@@ -1,6 +1,9 @@
 #include "cli/interruption.hpp"
 
+#include "sim/unfinished_file.hpp"
+
 #include <csignal>
+#include <fcntl.h>
 #include <sys/time.h>
 #include <unistd.h>
 
@@ -11,15 +14,13 @@ namespace {
 // Signal handlers can reach nothing but static variables.
 std::atomic<bool> stop{false};
 std::atomic<int> signal_number{0};
-std::atomic<int> files_in_progress{0};
 std::atomic<bool> told{false};
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
 
 constexpr suseconds_t patience_us = 700'000;
-constexpr suseconds_t retry_us = 100'000;
 
 void on_patience_over(int) {
-    if (files_in_progress != 0) return; // tried again after retry_us
+    sim::remove_unfinished_files();
     tell_interrupted();
     ::_exit(interrupted_status());
 }
@@ -28,7 +29,7 @@ void on_signal(int number) {
     if (signal_number != 0) return; // the clock is ticking
     signal_number = number;
     stop = true;
-    const itimerval patience{{0, retry_us}, {0, patience_us}};
+    const itimerval patience{{0, 0}, {0, patience_us}};
     ::setitimer(ITIMER_REAL, &patience, nullptr); // a plain system call on Linux, safe in a handler
 }
 
@@ -42,16 +43,17 @@ void handle(int number, void (*handler)(int)) {
 } // namespace
 
 void catch_interruptions() {
+    // Open for reading only: what is written there fails, as it did before.
+    for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+        if (::fcntl(stream, F_GETFD) == -1) ::open("/dev/null", O_RDONLY);
+    handle(SIGXFSZ, SIG_IGN);
+    handle(SIGPIPE, SIG_IGN);
     handle(SIGALRM, on_patience_over);
     handle(SIGINT, on_signal);
     handle(SIGTERM, on_signal);
 }
 
 const std::atomic<bool>& stop_requested() { return stop; }
-
-FilesInProgress::FilesInProgress() { ++files_in_progress; }
-
-FilesInProgress::~FilesInProgress() { --files_in_progress; }
 
 // Called by the handler, too: the clock may run out while the program is just ending by itself.
 void tell_interrupted() {

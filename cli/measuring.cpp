@@ -14,6 +14,7 @@ Measuring::Measuring(const std::string& fidelity, const std::string& threads) {
     options_.threads = threads_of(threads);
     options_.stop = &stop_requested();
     line_.emplace();
+    reports::enter({options_.stop, line_->progress(), nullptr}, reports::Progress::Phase::measuring);
     if (reports::Progress* progress = line_->progress()) {
         progress->phase = reports::Progress::Phase::measuring;
         options_.progress = [progress](double share) { progress->share = share; };
@@ -22,10 +23,9 @@ Measuring::Measuring(const std::string& fidelity, const std::string& threads) {
 
 std::string write_tables(const std::string& directory, const std::string& document_name,
                          const nlohmann::ordered_json& document, const std::vector<reports::Table>& tables,
-                         const std::string& page) {
-    const FilesInProgress keep_alive;
+                         const std::string& page, bool already_begun) {
     const std::filesystem::path folder(directory);
-    reports::make_directory(folder);
+    if (!already_begun) reports::begin_report_folder(folder);
     std::string names = document_name;
     for (const reports::Table& table : tables) {
         reports::write_file(folder / table.name, table.text());

@@ -26,10 +26,11 @@ class Measuring {
     reports::GeometryRunOptions options_;
 };
 
-/// Writes a document, tables and, if there is one, a page into `directory`; returns the line that says so.
+/// Writes a document, tables and, if there is one, a page into `directory`; returns the line that says so. What an
+/// earlier run left there is removed, unless the caller has begun the folder and written some of its files.
 std::string write_tables(const std::string& directory, const std::string& document_name,
                          const nlohmann::ordered_json& document, const std::vector<reports::Table>& tables,
-                         const std::string& page);
+                         const std::string& page, bool already_begun = false);
 
 /// Throws sim::InputError for a GPU of --gpus other than the one that depth peeling was measured on.
 void check_peeling_gpus(const std::string& gpus, const std::string& measured);

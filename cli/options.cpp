@@ -10,6 +10,7 @@
 #include <charconv>
 #include <cmath>
 #include <fmt/format.h>
+#include <map>
 #include <string_view>
 
 namespace cli {
@@ -44,7 +45,7 @@ unsigned parse_threads(const std::string& text) {
     constexpr unsigned most = 1024;
     const auto number = parse<unsigned>(text);
     if (!number || *number < 1 || *number > most)
-        throw sim::InputError(fmt::format("--threads: expected 1 to {}, got '{}'", most, text));
+        throw sim::InputError(fmt::format("--threads: expected a whole number from 1 to {}, got '{}'", most, text));
     return *number;
 }
 
@@ -57,7 +58,7 @@ std::uint64_t parse_seed(const std::string& text) {
 std::uint32_t parse_count(std::string_view option, const std::string& text, std::uint32_t most) {
     const auto number = parse<std::uint32_t>(text);
     if (!number || *number < 1 || *number > most)
-        throw sim::InputError(fmt::format("{}: expected 1 to {}, got '{}'", option, most, text));
+        throw sim::InputError(fmt::format("{}: expected a whole number from 1 to {}, got '{}'", option, most, text));
     return *number;
 }
 
@@ -111,6 +112,19 @@ std::vector<std::string> parse_designs(std::string_view text) {
     return names;
 }
 
+// Which of two values was meant, nobody can know.
+void expect_each_once(const std::vector<std::string>& settings) {
+    std::map<std::string, std::string> seen;
+    for (const std::string& setting : settings) {
+        std::string key = setting.substr(0, setting.find('='));
+        std::erase_if(key, [](char c) { return c == ' ' || c == '\t'; });
+        const auto [first, is_new] = seen.emplace(key, setting);
+        if (!is_new)
+            throw sim::InputError(
+                fmt::format("--set: '{}' is set twice, by '{}' and '{}'", key, first->second, setting));
+    }
+}
+
 } // namespace
 
 reports::ComparisonRequest request_of(const FrameOptions& options, const std::string& designs) {
@@ -128,6 +142,7 @@ reports::ComparisonRequest request_of(const FrameOptions& options, const std::st
     if (!options.program.empty()) request.workload_settings.push_back("program=" + options.program);
     if (!options.light.empty()) request.workload_settings.push_back("light=" + options.light);
     constexpr std::string_view workload = "workload.";
+    expect_each_once(options.settings);
     for (const std::string& setting : options.settings)
         if (setting.starts_with(workload))
             request.workload_settings.push_back(setting.substr(workload.size()));
@@ -160,6 +175,7 @@ reports::TruthRequest request_of(const TruthCommand& command) {
     parse_size(command.size, request);
     if (!command.k.empty()) request.workload_settings.push_back("k=" + command.k);
     constexpr std::string_view workload = "workload.";
+    expect_each_once(command.settings);
     for (const std::string& setting : command.settings) {
         if (!setting.starts_with(workload))
             throw sim::InputError(fmt::format("--set: expected workload.KEY=VALUE, got '{}'", setting));
@@ -217,6 +233,7 @@ reports::GeometryRequest request_of(const GeometryCommand& command) {
         throw sim::InputError(fmt::format("--reads: expected all or position, got '{}'", command.reads));
     request.experiment.reads_all = command.reads == "all";
     request.gpu = command.gpu;
+    expect_each_once(command.settings);
     request.gpu_settings = command.settings;
     request.seed = parse_seed(command.seed);
     return request;
@@ -234,7 +251,8 @@ unsigned threads_of(const std::string& text) { return text.empty() ? reports::co
 unsigned folds_of(const std::string& text) {
     constexpr std::uint32_t most_folds = 1000;
     const std::uint32_t folds = parse_count("--folds", text, most_folds);
-    if (folds < 2) throw sim::InputError(fmt::format("--folds: expected 2 to {}, got {}", most_folds, folds));
+    if (folds < 2)
+        throw sim::InputError(fmt::format("--folds: expected a whole number from 2 to {}, got {}", most_folds, folds));
     return folds;
 }
 

@@ -136,7 +136,9 @@ struct CalibrateCommand : MeasureCommand {
     std::string seed = "1";
     std::string out; ///< of --out
 };
-struct StudyCommand : MeasureCommand {};
+struct StudyCommand : MeasureCommand {
+    bool resume = true; ///< take finished points from the folder
+};
 
 /// A text asked for with --help or --version.
 struct ShowText {

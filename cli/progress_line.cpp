@@ -1,5 +1,6 @@
 #include "cli/progress_line.hpp"
 
+#include "cli/console.hpp"
 #include "reports/numbers.hpp"
 
 #include <algorithm>
@@ -48,7 +49,7 @@ std::string progress_text(const Progress& progress, double seconds) {
     return text;
 }
 
-ProgressLine::ProgressLine() : shown_(::isatty(STDERR_FILENO) != 0) {
+ProgressLine::ProgressLine() : shown_(::isatty(STDERR_FILENO) != 0 && terminal_is_able()) {
     if (shown_) thread_ = std::thread([this] { show(); });
 }
 
@@ -73,12 +74,10 @@ void ProgressLine::show() {
             begin = Clock::now();
         }
         const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
-        fmt::print(stderr, "\r{}\033[K", progress_text(progress_, seconds));
-        std::fflush(stderr);
+        write_error(fmt::format("\r{}\033[K", progress_text(progress_, seconds)));
         wake_.wait_for(lock, interval, [this] { return done_; });
     }
-    fmt::print(stderr, "\r\033[K");
-    std::fflush(stderr);
+    write_error("\r\033[K");
 }
 
 } // namespace cli

@@ -26,8 +26,8 @@ void sensitivity(const SensitivityCommand& command) {
         written = "\n" + write_tables(command.directory, "sensitivity.json", document,
                                       {reports::sensitivity_table(result), reports::conclusions_table(result)},
                                       reports::sensitivity_page(result));
-    print(command.json ? reports::result_text(document)
-                       : reports::sensitivity_text(result, terminal_style()) + written);
+    print_result(command.json, reports::result_text(document), reports::sensitivity_text(result, terminal_style()),
+                 reports::remarks(result), written);
 }
 
 } // namespace cli

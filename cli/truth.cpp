@@ -18,19 +18,18 @@ reports::TruthRun compute(const reports::TruthRequest& request) {
 
 } // namespace
 
-void truth(const TruthCommand& command) {
+int truth(const TruthCommand& command) {
     const reports::TruthRequest request = request_of(command);
     if (!command.directory.empty()) reports::make_directory(command.directory);
     if (!command.directory.empty() && !command.no_images) reports::require_images();
     const reports::TruthRun run = compute(request);
-    for (const std::string& note : run.notes) complain(note);
     std::string written;
     if (!command.directory.empty()) {
-        const FilesInProgress keep_alive;
         written = "\n" + reports::write_truth(run, command.directory, !command.no_images);
     }
-    print(command.json ? reports::result_text(reports::truth_json(run))
-                       : reports::truth_text(run, terminal_style().colour) + written);
+    print_result(command.json, reports::result_text(reports::truth_json(run)),
+                 reports::truth_text(run, terminal_style()), reports::remarks(run), written);
+    return command.check && !run.holds() ? status_no : status_good;
 }
 
 } // namespace cli

@@ -1,5 +1,7 @@
 #include "pipeline/fragment_stream.hpp"
 
+#include <algorithm>
+
 namespace pipeline {
 
 namespace {
@@ -10,6 +12,13 @@ std::uint64_t held(const std::vector<Element>& vector) {
 }
 
 } // namespace
+
+std::uint32_t FragmentStream::range_of(std::uint32_t primitive) const {
+    const auto after =
+        std::upper_bound(draws.begin(), draws.end(), primitive,
+                         [](std::uint32_t p, const DrawRange& range) { return p < range.first_primitive; });
+    return static_cast<std::uint32_t>(after - draws.begin()) - 1;
+}
 
 std::uint64_t FragmentStream::bytes() const {
     return held(draws) + held(primitives) + held(triangles) + held(quads) + held(depths) + held(colours) +

@@ -55,14 +55,20 @@ struct Primitive {
     bool clipped = false;
 };
 
-/// The primitives of one instance of one draw.
+/// The primitives of one instance of one draw, or of a part of it that has a draw call of its own (frame.hpp).
 struct DrawRange {
+    static constexpr std::uint32_t own_geometry = ~std::uint32_t{0};
+
     std::uint32_t draw = 0;
     std::uint32_t instance = 0;
     std::uint32_t first_primitive = 0;
     std::uint32_t primitives = 0;
     QuadId first_quad = 0;
     std::uint32_t quads = 0;
+    std::uint32_t geometry = own_geometry; ///< of a part: the one that its triangles are listed in,
+    std::uint32_t first_triangle = 0;      ///< ... from this one on
+
+    bool is_part() const { return geometry != own_geometry; }
 };
 
 struct FragmentStream {
@@ -86,6 +92,8 @@ struct FragmentStream {
     /// Rows of the planes of all samples.
     std::uint32_t rows() const { return samples * plane_rows(height, samples); }
     std::uint32_t draw_of(QuadId quad) const { return triangles[quads[quad].triangle].draw; }
+    /// The range that a primitive lies in: an index into `draws`.
+    std::uint32_t range_of(std::uint32_t primitive) const;
     /// What a modify program may read of pixel `lane` (0 to 3) of a quad.
     Fragment fragment(QuadId quad, std::size_t lane) const {
         return {colours.empty() ? nullptr : &colours[quad][lane].x, depths[quad][lane], draw_of(quad)};

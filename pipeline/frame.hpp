@@ -48,12 +48,23 @@ struct DepthState {
     bool write = false;
 };
 
+/// Triangles of one instance of a draw that are handed over with a draw call of their own: a run of the list that
+/// another geometry keeps of them.
+struct DrawPart {
+    std::uint32_t draw = 0; ///< whose material, vertices and counters they have; index into Frame::draws
+    std::uint32_t instance = 0;
+    std::uint32_t geometry = 0; ///< triangles, not strips or fans
+    std::uint32_t first_triangle = 0;
+    std::uint32_t triangles = 0;
+};
+
 struct Pass {
     std::string name;
     PassKind kind = PassKind::draw;
     std::vector<std::string> reads;   ///< surfaces
     std::vector<std::string> writes;  ///< surfaces
     std::vector<std::uint32_t> draws; ///< indices into Frame::draws; draw passes only
+    std::vector<DrawPart> parts;      ///< of those draws, in this order; empty: each draw whole
     DepthState depth;
     bool colour = false;                  ///< writes the shaded colour to the "colour" surface
     std::uint32_t colour_targets = 1;     ///< written at once, all of the colour format; the first holds the colour

@@ -97,6 +97,7 @@ class Machine {
     void collect_pixels(RunResult& result, const ReferenceImage& reference) const;
     void judge_pixels(RunResult& result, const ReferenceImage& reference, std::vector<std::uint8_t> wrong,
                       const std::vector<std::uint8_t>& tied) const;
+    void explain_peeling(std::vector<std::uint8_t>& facts) const;
     /// Places where colour or depth differ from the reference: 1.
     std::vector<std::uint8_t> wrong_fixed_places(const RunResult& result, const ReferenceImage& reference) const;
     bool explained(std::size_t place) const; ///< a hazard happened here

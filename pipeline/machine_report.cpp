@@ -4,6 +4,7 @@
 #include "pipeline/machine_units.hpp"
 #include "pipeline/memory/unit_report.hpp"
 #include "pipeline/on_chip_area.hpp"
+#include "pipeline/peel_resolution.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -42,6 +43,14 @@ Json cache_report(std::uint64_t hits, std::uint64_t misses) {
 Json link_report(std::uint64_t bytes, std::uint64_t fragments) {
     return {{"bytes", bytes},
             {"per_fragment", fragments == 0 ? 0.0 : static_cast<double>(bytes) / static_cast<double>(fragments)}};
+}
+
+std::vector<std::string> names_of_draw_counters() {
+    const auto& geometry = sim::field_names<GeometryDrawStats>;
+    std::vector<std::string> names(geometry.begin(), geometry.end());
+    names.insert(names.end(), {"quads", "fragments", "hazardous_quads", "first_cycle", "last_cycle"});
+    for (const auto client : memory_client_names) names.push_back(fmt::format("dram_{}_bytes", client));
+    return names;
 }
 
 /// The bits that any sample of a pixel has.
@@ -128,7 +137,7 @@ void Machine::collect_pixels(RunResult& result, const ReferenceImage& reference)
     const std::vector<std::uint8_t> fixed = wrong_fixed_places(result, reference);
     wrong.resize(frame_->view_of_kbuffer().places());
     if (frame_->kbuffer_view) // surfaces of other pixels, which nothing explains
-        result.wrong_pixels = result.unexplained_pixels =
+        result.wrong_pixels = result.wrong_because.unexplained =
             static_cast<std::uint64_t>(std::count(fixed.begin(), fixed.end(), 1));
     else
         for (std::size_t place = 0; place < wrong.size(); ++place) wrong[place] |= fixed[place];
@@ -148,10 +157,47 @@ std::vector<std::uint8_t> Machine::wrong_fixed_places(const RunResult& result, c
     return wrong;
 }
 
+namespace {
+
+// Of a place, or of a pixel: what is true of any of its samples.
+constexpr std::uint8_t is_wrong = 1, more_than_tied = 2, has_overflow = 4, by_hazard = 8, by_tie = 16, by_format = 32,
+                       by_eps = 64, unexplained = 128;
+
+void count_reason(WrongBecause& because, std::uint8_t facts) {
+    std::uint64_t& reason = (facts & unexplained) != 0 ? because.unexplained
+                            : (facts & by_hazard) != 0 ? because.hazard
+                            : (facts & by_tie) != 0    ? because.tie
+                            : (facts & by_format) != 0 ? because.depth_format
+                            : (facts & by_eps) != 0    ? because.eps
+                                                       : because.overflow;
+    ++reason;
+}
+
+} // namespace
+
+// Of wrong places that nothing else explains: what peeling cannot tell apart.
+void Machine::explain_peeling(std::vector<std::uint8_t>& facts) const {
+    if (!peels()) return;
+    std::vector<std::size_t> places;
+    for (std::size_t place = 0; place < facts.size(); ++place)
+        if ((facts[place] & unexplained) != 0) places.push_back(place);
+    if (places.empty()) return;
+    std::size_t stream = 0;
+    for (const Pass& pass : frame_->passes) {
+        if (pass.kbuffer) break;
+        stream += pass.kind == PassKind::draw ? 1 : 0;
+    }
+    const std::vector<PeelLoss> losses = peel_losses(plan_.passes, streams_[stream], places);
+    for (std::size_t i = 0; i < places.size(); ++i)
+        if (losses[i] != PeelLoss::none) {
+            facts[places[i]] &= static_cast<std::uint8_t>(~unexplained);
+            facts[places[i]] |= losses[i] == PeelLoss::eps ? by_eps : by_format;
+        }
+}
+
 // A pixel is wrong where any of its samples is, and so on; tied where all that is wrong of it is a tie.
 void Machine::judge_pixels(RunResult& result, const ReferenceImage& reference, std::vector<std::uint8_t> wrong,
                            const std::vector<std::uint8_t>& tied) const {
-    constexpr std::uint8_t is_wrong = 1, more_than_tied = 2, has_overflow = 4, unexplained = 8;
     for (std::size_t place = 0; frame_->needs.kbuffer && place < wrong.size(); ++place) {
         const bool overflow = overflowed(place, reference.depth_complexity[place]);
         const bool tie = tied[place] != 0;
@@ -159,16 +205,21 @@ void Machine::judge_pixels(RunResult& result, const ReferenceImage& reference, s
         if (wrong[place] != 0) {
             facts |= is_wrong;
             if (!tie) facts |= more_than_tied;
-            if (!explained(place) && !overflow && !(plan_.order_free && tie)) facts |= unexplained;
+            if (explained(place))
+                facts |= by_hazard;
+            else if (!overflow)
+                facts |= plan_.order_free && tie ? by_tie : unexplained;
         }
         wrong[place] = facts;
     }
+    if (frame_->needs.kbuffer) explain_peeling(wrong);
     result.wrong_mask = of_pixels(frame_->view_of_kbuffer(), std::move(wrong));
     for (std::uint8_t& facts : result.wrong_mask) {
+        const bool counted = frame_->needs.kbuffer && (facts & is_wrong) != 0;
         result.wrong_pixels += (facts & is_wrong) != 0 ? 1 : 0;
-        result.tied_pixels += frame_->needs.kbuffer && (facts & (is_wrong | more_than_tied)) == is_wrong ? 1 : 0;
+        result.tied_pixels += counted && (facts & more_than_tied) == 0 ? 1 : 0;
         result.overflow_pixels += (facts & has_overflow) != 0 ? 1 : 0;
-        result.unexplained_pixels += (facts & unexplained) != 0 ? 1 : 0;
+        if (counted) count_reason(result.wrong_because, facts);
         facts &= is_wrong;
     }
 }
@@ -282,6 +333,7 @@ void Machine::collect_counters(RunResult& result) const {
     result.bytes["crossbar"] = link_report(stats.crossbar.bytes, result.fragments);
 
     result.area = area_json(on_chip_area(gpu_, *frame_, *design_));
+    result.draw_counters = names_of_draw_counters();
     for (std::uint32_t draw = 0; draw < frame_->draws.size(); ++draw) collect_draw(result, draw);
 }
 
@@ -301,15 +353,16 @@ void Machine::collect_draw(RunResult& result, std::uint32_t draw) const {
         output.first_cycle = std::min(output.first_cycle, part.first_cycle);
         output.last_cycle = std::max(output.last_cycle, part.last_cycle);
     }
-    Json counters = sim::to_json(units_->front.draw_stats(draw));
-    counters["quads"] = output.quads;
-    counters["fragments"] = output.fragments;
-    counters["hazardous_quads"] = output.hazards;
-    counters["first_cycle"] = output.quads == 0 ? 0 : output.first_cycle;
-    counters["last_cycle"] = output.last_cycle;
+    std::vector<std::uint64_t> counters;
+    counters.reserve(result.draw_counters.size());
+    const GeometryDrawStats geometry = units_->front.draw_stats(draw);
+    sim::for_each_field(geometry,
+                        [&counters](const auto&, const sim::Counter& counter) { counters.push_back(counter.value); });
+    counters.insert(counters.end(), {output.quads, output.fragments, output.hazards,
+                                     output.quads == 0 ? 0 : output.first_cycle, output.last_cycle});
     const MemoryBytes bytes = units_->memory.draw_bytes(draw);
-    for (std::size_t client = 0; client < memory_client_count; ++client)
-        counters[fmt::format("dram_{}_bytes", memory_client_names[client])] = bytes[client];
+    counters.insert(counters.end(), bytes.begin(), bytes.end());
+    CHECK(counters.size() == result.draw_counters.size());
     result.draws.push_back({frame_->draws[draw].name, draw, std::move(counters)});
 }
 

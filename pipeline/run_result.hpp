@@ -2,11 +2,13 @@
 #pragma once
 
 #include "pipeline/output/hazards.hpp"
+#include "sim/field.hpp"
 #include "sim/time.hpp"
 
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace pipeline {
@@ -18,6 +20,30 @@ struct LayerErrors {
     std::uint64_t unsorted = 0;  ///< nearer than the layer before it
 };
 
+/// Wrong pixels by what made them wrong, each counted once: the first of these that applies.
+struct WrongBecause {
+    std::uint64_t unexplained = 0;  ///< none of the others: 0 by law
+    std::uint64_t hazard = 0;       ///< a hazard happened there
+    std::uint64_t overflow = 0;     ///< more fragments than the design holds
+    std::uint64_t tie = 0;          ///< fragments of equal depth, of a design free of order
+    std::uint64_t depth_format = 0; ///< peeled layers that lie nearer to each other than the depth format can tell
+    std::uint64_t eps = 0;          ///< peeled layers within eps of each other, by the eps rule
+
+    static constexpr auto fields() {
+        using S = WrongBecause;
+        return std::tuple{
+            sim::field<&S::unexplained>("no reason is known").unit("pixels"),
+            sim::field<&S::hazard>("a hazard happened there").unit("pixels"),
+            sim::field<&S::overflow>("there are more fragments than the design holds").unit("pixels"),
+            sim::field<&S::tie>("fragments have equal depths, and the design is free of order").unit("pixels"),
+            sim::field<&S::depth_format>("layers lie nearer to each other than the depth format of the "
+                                         "passes can tell apart")
+                .unit("pixels"),
+            sim::field<&S::eps>("layers lie within eps of each other").unit("pixels")};
+    }
+};
+static_assert(sim::fully_described<WrongBecause>);
+
 /// Counters of one pass as the design executed it (one design may execute a frame's pass several times).
 struct PassResult {
     std::string name;
@@ -25,11 +51,11 @@ struct PassResult {
     nlohmann::ordered_json counters; ///< stage name -> counters of this pass
 };
 
-/// Counters of one draw, over all passes.
+/// Counters of one draw, over all passes; RunResult::draw_counters says which. There may be a million of them.
 struct DrawResult {
     std::string name;
     std::uint32_t draw = 0;
-    nlohmann::ordered_json counters;
+    std::vector<std::uint64_t> counters;
 };
 
 struct RunResult {
@@ -49,8 +75,8 @@ struct RunResult {
     std::uint64_t wrong_pixels = 0;    ///< pixels that differ from the reference in any bit of any sample
     std::uint64_t tied_pixels = 0;     ///< of those, pixels that differ among fragments of equal depth only
     std::uint64_t overflow_pixels = 0; ///< pixels with more fragments than the design can hold
-    std::uint64_t unexplained_pixels =
-        0; ///< wrong without a hazard, an overflow or, for designs free of order, a tie: 0 by law
+    WrongBecause wrong_because;
+    std::uint64_t unexplained_pixels() const { return wrong_because.unexplained; }
     std::uint64_t lost_fragments = 0; ///< entries of the reference that no layer of the run holds
     std::vector<LayerErrors> layers;
 
@@ -73,10 +99,19 @@ struct RunResult {
     nlohmann::ordered_json bytes;  ///< link -> bytes, and bytes per fragment
     nlohmann::ordered_json area;   ///< as area_json() says
     std::vector<PassResult> passes;
+    std::vector<std::string> draw_counters; ///< names of DrawResult::counters
     std::vector<DrawResult> draws;
+
+    /// A counter of draw number `draw` by name; 0 when there is none of that name.
+    std::uint64_t draw_counter(std::size_t draw, std::string_view counter) const {
+        for (std::size_t i = 0; i < draw_counters.size(); ++i)
+            if (draw_counters[i] == counter) return draws.at(draw).counters.at(i);
+        return 0;
+    }
 
     // Cost of the run itself; everything else above is the same on every machine and for any thread count.
     double host_seconds = 0;
+    double cpu_seconds = 0; ///< of the thread that ran it
     std::uint64_t host_ticks = 0;
 };
 

@@ -60,7 +60,8 @@ VertexPathDemand vertex_path_demand(const GpuParams& gpu, const Frame& frame, st
                          params.vertex_fetch.lines_per_clk;
     demand.vertex_shader = vertices * params.vertex_shader.cycles_per_vertex / params.vertex_shader.units;
     demand.primitive_assembly = primitives / params.primitive_assembly.primitives_per_clk;
-    demand.triangle_setup = primitives * params.triangle_setup.cycles_per_triangle;
+    demand.triangle_setup =
+        (primitives - static_cast<double>(counts.degenerate.value)) * params.triangle_setup.cycles_per_triangle;
     demand.memory = static_cast<double>(counts.vertex_bytes.value + counts.index_bytes.value) /
                     (gpu.memory.bandwidth * 1e3 / gpu.clock.core_mhz);
     return demand;

@@ -21,7 +21,7 @@ constexpr std::uint32_t window = 8192;  ///< primitives that are counted in a ro
 constexpr std::uint32_t warm_up = 1024; ///< primitives before a window that fill the caches
 
 struct PathCounts {
-    std::uint64_t primitives = 0, runs = 0, lines = 0;
+    std::uint64_t primitives = 0, degenerate = 0, runs = 0, lines = 0;
     std::uint64_t rows = 0; ///< lines in another row of memory than the line before them in their bank
 };
 
@@ -72,6 +72,7 @@ class DrawCounter {
         const auto vertices = reader_(number);
         const ReuseResult reuse = reuse_.triangle(vertices);
         ++counts.primitives;
+        counts.degenerate += names_a_vertex_twice(vertices) ? 1U : 0U;
         for (unsigned missed = reuse.missed; missed != 0; missed &= missed - 1) {
             ++counts.runs;
             lines_.begin(vertices[static_cast<std::size_t>(std::countr_zero(missed))]);
@@ -127,7 +128,8 @@ GeometryDrawStats stats_of(const Frame& frame, const Draw& draw, const PathCount
     stats.primitives = {primitives};
     stats.vertices_referenced = {3 * primitives};
     stats.vertex_shader_runs = {scaled(counts.runs, factor)};
-    stats.triangles = {primitives};
+    stats.culled = stats.degenerate = {scaled(counts.degenerate, factor)};
+    stats.triangles = {primitives - stats.degenerate.value};
     stats.index_bytes = {index_lines * params.index_fetch.line * instances};
     stats.vertex_bytes = {scaled(counts.lines, factor) * params.vertex_fetch.cache.line};
     return stats;

@@ -1,4 +1,5 @@
 // The detailed run of the vertex path.
+#include "pipeline/functional/vertex_fetch.hpp"
 #include "pipeline/geometry/geometry_front.hpp"
 #include "pipeline/memory/memory_system.hpp"
 #include "pipeline/vertex_path.hpp"
@@ -28,7 +29,7 @@ class TriangleDrain final : public sim::Component {
     }
 };
 
-/// The primitives of a pass, each of which becomes one triangle.
+/// The primitives of a pass, each of which becomes one triangle, but for those that name a vertex twice.
 FragmentStream uncut_stream(const Frame& frame, const Pass& pass) {
     FragmentStream stream;
     std::uint64_t primitives = 0;
@@ -43,7 +44,17 @@ FragmentStream uncut_stream(const Frame& frame, const Pass& pass) {
         }
     }
     stream.primitives.resize(primitives);
-    for (std::uint32_t i = 0; i < stream.primitives.size(); ++i) stream.primitives[i] = {i, 1};
+    std::uint32_t triangles = 0;
+    for (const DrawRange& range : stream.draws) {
+        const PrimitiveReader read(*frame.resources, frame.resources->geometries[frame.draws[range.draw].geometry]);
+        for (std::uint32_t i = 0; i < range.primitives; ++i) {
+            const bool degenerate = names_a_vertex_twice(read(i));
+            stream.primitives[range.first_primitive + i] = {triangles, static_cast<std::uint8_t>(degenerate ? 0 : 1),
+                                                            degenerate ? PrimitiveFate::culled_degenerate
+                                                                       : PrimitiveFate::drawn};
+            triangles += degenerate ? 0U : 1U;
+        }
+    }
     return stream;
 }
 

@@ -1,11 +1,16 @@
 #include "reports/atomic_file.hpp"
 
 #include "sim/check.hpp"
+#include "sim/read_file.hpp"
+#include "sim/unfinished_file.hpp"
 
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <fstream>
+#include <sstream>
 #include <unistd.h>
 
 namespace reports {
@@ -29,30 +34,60 @@ int write_all(int file, std::string_view text) {
     return 0;
 }
 
+constexpr const char* notes_name = ".ropsim-files";
+constexpr std::uint64_t largest_notes = std::uint64_t{1} << 24U;
+
+// In the notes of the folder or of the one above it, whichever belongs to a run.
+void note_file(const fs::path& path) {
+    fs::path name = path.filename(), folder = path.parent_path();
+    for (int level = 0; level < 2; ++level) {
+        const int notes = ::open((folder / notes_name).c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
+        if (notes >= 0) {
+            write_all(notes, name.generic_string() + "\n"); // without a note the file merely stays
+            ::close(notes);
+            return;
+        }
+        name = folder.filename() / name;
+        folder = folder.parent_path();
+        if (name.has_root_path() || name.string().starts_with("..")) return;
+    }
+}
+
+// Only what can have been noted: a file here, or in a folder of this one.
+void remove_noted(const fs::path& directory, const fs::path& name) {
+    const auto parts = std::distance(name.begin(), name.end());
+    if (name.is_absolute() || parts < 1 || parts > 2 || *name.begin() == ".." || name.filename() == "..") return;
+    std::error_code failed;
+    const fs::path file = directory / name;
+    if (!fs::is_regular_file(fs::symlink_status(file, failed))) return;
+    fs::remove(file, failed);
+    if (parts == 2) fs::remove(file.parent_path(), failed); // where it is empty now
+}
+
 } // namespace
 
-AtomicFile::AtomicFile(fs::path path)
-    : path_(std::move(path)),
-      temporary_(path_.parent_path() / fmt::format(".{}.{}.part", path_.filename().string(), ::getpid())) {}
-
-AtomicFile::~AtomicFile() {
-    if (!done_) ::unlink(temporary_.c_str());
-}
-
-void AtomicFile::commit() {
-    if (::rename(temporary_.c_str(), path_.c_str()) != 0) cannot_write(path_, errno);
-    done_ = true;
-}
-
 void write_file(const fs::path& path, std::string_view text) {
-    AtomicFile file(path);
+    sim::UnfinishedFile file(path);
     const int descriptor = ::open(file.temporary().c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
     if (descriptor < 0) cannot_write(path, errno);
     int error = write_all(descriptor, text);
     // Some file systems notice only here that the disk is full.
     if (::close(descriptor) != 0 && error == 0) error = errno;
     if (error != 0) cannot_write(path, error);
-    file.commit();
+    note_file(path);
+    error = file.commit();
+    if (error != 0) cannot_write(path, error);
+}
+
+void begin_report_folder(const fs::path& directory) {
+    make_directory(directory);
+    std::error_code failed;
+    const fs::path notes = directory / notes_name;
+    if (fs::exists(notes, failed)) {
+        std::istringstream list(sim::read_file(notes, largest_notes));
+        for (std::string line; std::getline(list, line);) remove_noted(directory, line);
+    }
+    std::ofstream(notes, std::ios::trunc).flush();
 }
 
 void make_directory(const fs::path& directory) {
@@ -61,7 +96,7 @@ void make_directory(const fs::path& directory) {
     if (error && !fs::is_directory(directory))
         throw sim::InputError(fmt::format("{}: cannot be made a folder: {}", directory.string(), error.message()));
     // Asked by doing: access rights alone do not tell about read-only file systems.
-    const AtomicFile probe(directory / "probe");
+    const sim::UnfinishedFile probe(directory / "probe");
     const int descriptor = ::open(probe.temporary().c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
     if (descriptor < 0) cannot_write(directory, errno);
     ::close(descriptor);

@@ -1,4 +1,5 @@
-// Files that appear under their name only when they are complete: a run that fails or is stopped leaves nothing behind.
+// Files that appear under their name only when they are complete: a run that fails or is stopped leaves nothing behind,
+// and a folder that is used again nothing of the run before.
 #pragma once
 
 #include <filesystem>
@@ -6,27 +7,14 @@
 
 namespace reports {
 
-/// Write to temporary(), then commit(). Without commit() the destructor removes what was written.
-class AtomicFile {
-  public:
-    explicit AtomicFile(std::filesystem::path path);
-    ~AtomicFile();
-    AtomicFile(const AtomicFile&) = delete;
-    AtomicFile& operator=(const AtomicFile&) = delete;
-
-    /// A name in the folder of the file, so that renaming does not copy. Nothing exists there yet.
-    const std::filesystem::path& temporary() const { return temporary_; }
-    /// Gives the file its name; throws sim::InputError with the reason.
-    void commit();
-
-  private:
-    std::filesystem::path path_;
-    std::filesystem::path temporary_;
-    bool done_ = false;
-};
-
-/// Writes a whole file; throws sim::InputError "PATH: cannot be written: REASON".
+/// Writes a whole file; where its folder, or the one above, belongs to a run, it is noted there. Throws sim::InputError
+/// "PATH: cannot be written: REASON".
 void write_file(const std::filesystem::path& path, std::string_view text);
+
+/// Makes `directory` ready for the files of one run: what an earlier run wrote there with write_file() is removed, and
+/// what this one writes, there and one folder deeper, is noted in ".ropsim-files". Other files stay. Throws as
+/// make_directory() does.
+void begin_report_folder(const std::filesystem::path& directory);
 
 /// Creates `directory` and its parents, and makes sure that files can be written there.
 void make_directory(const std::filesystem::path& directory);

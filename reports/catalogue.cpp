@@ -180,20 +180,49 @@ std::vector<CatalogueEntry> counters() {
     return entries;
 }
 
+template <class List>
+std::vector<std::string> ids_of(const List& list, const char* prefix = "") {
+    std::vector<std::string> names;
+    for (const auto& one : list) names.push_back(prefix + std::string(one.id));
+    return names;
+}
+
+std::vector<std::string> design_names() { return ids_of(models::designs()); }
+std::vector<std::string> workload_names() { return ids_of(traces::workloads()); }
+std::vector<std::string> generator_names() { return ids_of(traces::generators(), "gen:"); }
+std::vector<std::string> preparation_names() { return ids_of(traces::preparations()); }
+
+std::vector<std::string> program_names() {
+    std::vector<std::string> names = ids_of(models::programs());
+    for (const std::string& file : models::shipped_user_programs()) names.push_back(file);
+    return names;
+}
+
+std::vector<std::string> names_of(const std::vector<CatalogueEntry>& entries) {
+    std::vector<std::string> names;
+    for (const CatalogueEntry& entry : entries) names.push_back(entry.name);
+    return names;
+}
+
+std::vector<std::string> parameter_names() { return names_of(parameters()); }
+std::vector<std::string> stability_names() { return names_of(stability_cases()); }
+std::vector<std::string> counter_names() { return names_of(counters()); }
+
 } // namespace
 
 const std::vector<CatalogueTopic>& catalogue_topics() {
     static const std::vector<CatalogueTopic> topics{
-        {"gpus", "simulated GPUs (--gpu)", true, gpus},
-        {"designs", "k-buffer designs (--designs, --design)", true, designs},
-        {"programs", "what a fragment does to the entries of its pixel (--program)", true, programs},
-        {"workloads", "rendering methods (--workload)", true, workloads},
-        {"generators", "scenes made by rule (SCENE)", true, generators},
-        {"preparations", "what can be done to meshes (--prepare of ropsim geometry)", true, preparations},
-        {"studies", "questions with a sweep, a table and a plot (ropsim study)", true, studies},
-        {"stability", "stiff and extreme cases (ropsim stability)", false, stability_cases},
-        {"params", "every number of GPU, designs and workloads (--set)", false, parameters},
-        {"stats", "every counter of every stage", false, counters}};
+        {"gpus", "simulated GPUs (--gpu)", true, gpus, models::gpu_names},
+        {"designs", "k-buffer designs (--designs, --design)", true, designs, design_names},
+        {"programs", "what a fragment does to the entries of its pixel (--program)", true, programs, program_names},
+        {"workloads", "rendering methods (--workload)", true, workloads, workload_names},
+        {"generators", "scenes made by rule (SCENE)", true, generators, generator_names},
+        {"preparations", "what can be done to meshes (--prepare of ropsim geometry)", true, preparations,
+         preparation_names},
+        {"studies", "questions with a sweep, a table and a plot (ropsim study)", true, studies, study_names},
+        {"stability", "stiff and extreme cases (ropsim stability)", false, stability_cases, stability_names},
+        {"params", "every number of GPU, designs and workloads (--set)", false, parameters, parameter_names},
+        {"stats", "every counter of every stage", false, counters, counter_names}};
     return topics;
 }
 

@@ -24,6 +24,8 @@ struct CatalogueTopic {
     std::string_view summary;
     bool short_list = true; ///< short enough for an overview
     std::vector<CatalogueEntry> (*entries)();
+    /// The names of the entries, without making them: a shell asks for them at each TAB.
+    std::vector<std::string> (*names)();
 };
 
 const std::vector<CatalogueTopic>& catalogue_topics();

@@ -6,6 +6,7 @@
 #include "pipeline/on_chip_area.hpp"
 #include "reports/flatten.hpp"
 #include "reports/stopwatch.hpp"
+#include "sim/counted.hpp"
 #include "traces/submission.hpp"
 
 #include <algorithm>
@@ -115,8 +116,8 @@ void fit_to_area(ComparisonInput& input, std::uint64_t bytes) {
         fitting.push_back(std::move(row));
     }
     if (fitting.empty())
-        throw sim::InputError(
-            fmt::format("--equal-area: no design fits into {} bytes; the smallest needs {}", equal.bytes, least));
+        throw sim::InputError(fmt::format("--equal-area: no design fits into {}; the smallest needs {}",
+                                          sim::counted(equal.bytes, "byte"), sim::counted(least, "byte")));
     input.designs = std::move(fitting);
     input.equal_area = std::move(equal);
 }
@@ -157,6 +158,7 @@ pipeline::RunResult run_design(const ComparisonInput& input, const ComparedDesig
     options.observer = supervision.observer;
     if (supervision.progress != nullptr) options.quads_done = &supervision.progress->quads_done;
     const Stopwatch watch;
+    const double cpu_begin = Stopwatch::thread_seconds();
     pipeline::Machine machine(design.gpu, submitted != nullptr ? submitted->frame : *input.frame,
                               submitted != nullptr ? submitted->streams : input.streams, *design.design, options);
     pipeline::RunResult result = machine.run(submitted != nullptr ? submitted->reference : input.reference);
@@ -164,6 +166,19 @@ pipeline::RunResult run_design(const ComparisonInput& input, const ComparedDesig
     result.sort_milliseconds =
         design.design->submission().sort_ns_per_triangle * static_cast<double>(input.scene.triangles_drawn) / 1e6;
     result.host_seconds = watch.seconds();
+    result.cpu_seconds = Stopwatch::thread_seconds() - cpu_begin;
+    return result;
+}
+
+pipeline::RunResult run_again(const ComparisonInput& input, const ComparedDesign& design,
+                              const pipeline::RunResult& run) {
+    pipeline::RunResult result = run;
+    result.design = design.name;
+    result.area = pipeline::area_json(pipeline::on_chip_area(design.gpu, *input.frame, *design.design));
+    result.sort_milliseconds =
+        design.design->submission().sort_ns_per_triangle * static_cast<double>(input.scene.triangles_drawn) / 1e6;
+    result.host_seconds = result.cpu_seconds = 0;
+    result.host_ticks = 0;
     return result;
 }
 

@@ -35,4 +35,8 @@ std::vector<pipeline::FragmentStream> shade(const pipeline::Frame& frame, unsign
 pipeline::RunResult run_design(const ComparisonInput& input, const ComparedDesign& design,
                                const Supervision& supervision);
 
+/// What run_design() would give, from the run of another design whose machine is the same on this frame.
+pipeline::RunResult run_again(const ComparisonInput& input, const ComparedDesign& design,
+                              const pipeline::RunResult& run);
+
 } // namespace reports

@@ -6,15 +6,17 @@
 #include "pipeline/functional/sample_pattern.hpp"
 #include "pipeline/machine.hpp"
 #include "reports/compared_designs.hpp"
+#include "reports/memory_limit.hpp"
 #include "reports/numbers.hpp"
 #include "reports/stopwatch.hpp"
 #include "traces/camera.hpp"
 #include "traces/workloads.hpp"
 
+#include <array>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sys/resource.h>
 #include <thread>
-#include <unistd.h>
 
 namespace reports {
 
@@ -43,12 +45,12 @@ void check_memory(const ComparisonInput& input, const ComparisonRequest& request
     const double running = std::min<double>(input.threads, static_cast<double>(input.designs.size()));
     const double needed =
         pixels * ((kbuffer + colour + depth) * (1 + static_cast<double>(input.designs.size())) + running * kbuffer);
-    const double here = static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
-    if (needed > here)
-        throw sim::InputError(
-            fmt::format("--size {}x{}{}: these designs need at least {} of memory, this machine has {}", request.width,
-                        request.height, request.samples == 1 ? "" : fmt::format(" --samples {}", request.samples),
-                        bytes_text(needed), bytes_text(here)));
+    const MemoryLimit limit = memory_limit();
+    if (needed > limit.bytes)
+        throw sim::InputError(fmt::format("--size {}x{}{}: these designs need at least {} of memory, {} {}",
+                                          request.width, request.height,
+                                          request.samples == 1 ? "" : fmt::format(" --samples {}", request.samples),
+                                          bytes_text(needed), limit.whose, bytes_text(limit.bytes)));
 }
 
 std::vector<float> picture_of(const pipeline::Frame& frame, const std::vector<float>& kbuffer,
@@ -97,6 +99,32 @@ std::uint64_t all_quads(const ComparisonInput& input) {
     return sum;
 }
 
+// By design the number of the one that is run for it. Where no pass has a k-buffer, a design changes nothing but the
+// numbers of the GPU that it was given.
+std::vector<std::size_t> same_machines(const ComparisonInput& input) {
+    std::vector<std::size_t> run_as(input.designs.size());
+    for (std::size_t i = 0; i < run_as.size(); ++i) {
+        run_as[i] = i;
+        for (std::size_t before = 0; !input.frame->program && before < i; ++before)
+            if (input.designs[before].gpu_changes == input.designs[i].gpu_changes) {
+                run_as[i] = before;
+                break;
+            }
+    }
+    return run_as;
+}
+
+std::string same_runs_text(const Comparison& comparison, const std::vector<std::size_t>& run_as) {
+    std::vector<std::string> others;
+    for (std::size_t i = 0; i < run_as.size(); ++i)
+        if (run_as[i] != i)
+            others.push_back(fmt::format("{} as {}", comparison.runs[i].design, comparison.runs[run_as[i]].design));
+    return others.empty() ? ""
+                          : fmt::format("no pass has a k-buffer, so equal machines were run once: {} {} the numbers of "
+                                        "the other",
+                                        fmt::join(others, ", "), others.size() == 1 ? "has" : "have");
+}
+
 std::uint64_t peak_memory() {
     rusage usage{};
     ::getrusage(RUSAGE_SELF, &usage);
@@ -124,7 +152,22 @@ SceneFacts facts_of(const traces::Scene& scene, const std::string& camera) {
             scene.notes};
 }
 
+namespace {
+
+// Of the process, for the last words when memory runs out.
+std::atomic<Progress::Phase> latest_phase{Progress::Phase::reading};
+
+} // namespace
+
+std::string_view latest_activity() {
+    static constexpr std::array<std::string_view, 7> names{
+        "reading the scene", "shading the frame", "computing the reference", "simulating", "writing files",
+        "measuring",         "tracing rays"};
+    return names.at(static_cast<std::size_t>(latest_phase.load()));
+}
+
 void enter(const Supervision& supervision, Progress::Phase phase) {
+    latest_phase = phase;
     if (supervision.stop != nullptr && *supervision.stop) throw sim::Interrupted();
     if (supervision.progress == nullptr) return;
     supervision.progress->share = 0.0;
@@ -174,8 +217,14 @@ Comparison compare(ComparisonInput input, const Supervision& supervision) {
     comparison.reference.composite =
         reference.picture.empty() ? picture_of(*input.frame, reference.kbuffer, reference.colour, reference.depth)
                                   : std::move(reference.picture);
+    const std::vector<std::size_t> run_as = same_machines(input);
     pipeline::parallel_for(input.threads, input.designs.size(), [&](std::size_t i) {
-        comparison.runs[i] = run_design(input, input.designs[i], supervision);
+        if (run_as[i] == i) comparison.runs[i] = run_design(input, input.designs[i], supervision);
+    });
+    for (std::size_t i = 0; i < run_as.size(); ++i)
+        if (run_as[i] != i) comparison.runs[i] = run_again(input, input.designs[i], comparison.runs[run_as[i]]);
+    comparison.same_runs = same_runs_text(comparison, run_as);
+    pipeline::parallel_for(input.threads, input.designs.size(), [&](std::size_t i) {
         comparison.pixels[i] = run_pixels(input, comparison.reference.composite, input.designs[i], comparison.runs[i]);
     });
     comparison.reference.kbuffer = std::move(reference.kbuffer);

@@ -13,6 +13,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace reports {
@@ -53,6 +54,9 @@ struct Supervision {
 
 /// The next phase begins. Throws sim::Interrupted when it shall not.
 void enter(const Supervision& supervision, Progress::Phase phase);
+
+/// What the process is doing, as far as enter() was told: "shading the frame".
+std::string_view latest_activity();
 
 /// The frame as the application submits it for designs that ask for another order or for batches.
 struct SubmittedFrame {

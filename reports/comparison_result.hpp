@@ -84,6 +84,7 @@ struct Comparison {
     std::vector<nlohmann::ordered_json> design_support;    ///< what it can be used for, of each run
     std::vector<FramePixels> pixels;                       ///< of each run
     std::optional<EqualArea> equal_area;
+    std::string same_runs; ///< which designs have the numbers of another one, and why; empty where all were run
     HostCost host;
 
     std::uint32_t width() const { return frame->view.width; }

@@ -61,7 +61,7 @@ std::string stage_text(const std::string& stage, const ordered_json& report, con
                 {path, value_text(value), info == nullptr ? "" : info->unit, info == nullptr ? "" : info->text});
     }
     const std::size_t units = report.value("units", std::size_t{1});
-    std::string title = units == 1 ? stage : fmt::format("{} ({} units)", stage, units);
+    std::string title = units == 1 ? stage : fmt::format("{} ({})", stage, counted(units, "unit"));
     if (style.colour) title = fmt::format("\033[1m{}\033[0m", title);
     std::string text = wrap(fmt::format("{}: {}", title, activity_text(fractions)), style.columns, 2);
     text += lines_text(lines, style);

@@ -4,6 +4,7 @@
 #include "reports/flatten.hpp"
 #include "reports/hazard_text.hpp"
 #include "reports/run_numbers.hpp"
+#include "reports/wrong_text.hpp"
 #include "sim/described.hpp"
 
 #include <algorithm>
@@ -64,6 +65,9 @@ const std::vector<std::string>& design_columns() {
                      "incoherence per million [1e-6]", "mean staleness [versions]", "max staleness [versions]",
                      "wrong pixels [pixels]", "tied pixels [pixels]", "overflow pixels [pixels]",
                      "unexplained pixels [pixels]", "lost fragments [fragments]", "lost updates [fragments]"});
+        for_each_reason({}, [&list](std::string_view reason, std::string_view, std::uint64_t) {
+            list.push_back(fmt::format("wrong because {} [pixels]", reason));
+        });
         return list;
     }();
     return columns;
@@ -95,9 +99,12 @@ std::vector<std::string> design_cells(const RunResult& run, const VariantFacts& 
                                    text(run.fragments)};
     const std::vector<std::string> hazards = hazard_cells(run);
     cells.insert(cells.end(), hazards.begin(), hazards.end());
-    for (const std::uint64_t count : {run.wrong_pixels, run.tied_pixels, run.overflow_pixels, run.unexplained_pixels,
+    for (const std::uint64_t count : {run.wrong_pixels, run.tied_pixels, run.overflow_pixels, run.unexplained_pixels(),
                                       run.lost_fragments, run.lost_updates})
         cells.push_back(text(count));
+    for_each_reason(run.wrong_because, [&cells](std::string_view, std::string_view, std::uint64_t count) {
+        cells.push_back(text(count));
+    });
     return cells;
 }
 
@@ -106,7 +113,7 @@ std::vector<std::string> design_cells(const RunResult& run, const VariantFacts& 
 std::string Table::text() const {
     std::string result = sim::csv_line(header);
     for (const auto& row : rows) result += sim::csv_line(row);
-    return result;
+    return result + lines;
 }
 
 Table designs_table(const Comparison& comparison) {
@@ -138,12 +145,31 @@ Table stages_table(const Comparison& comparison) {
     return table;
 }
 
+// Written down at once: there may be millions of rows.
 Table draws_table(const Comparison& comparison) {
-    WideTable table({"design", "draw", "name"});
+    Table table{"draws.csv", {"design", "draw", "name"}, {}, {}};
+    const std::size_t keys = table.header.size();
     for (const RunResult& run : comparison.runs)
-        for (const pipeline::DrawResult& draw : run.draws)
-            table.add_row({run.design, text(std::uint64_t{draw.draw}), draw.name}, flatten(draw.counters));
-    return table.finish("draws.csv");
+        for (const std::string& counter : run.draw_counters)
+            if (std::find(table.header.begin(), table.header.end(), counter) == table.header.end())
+                table.header.push_back(counter);
+    std::vector<std::string> row(table.header.size());
+    for (const RunResult& run : comparison.runs) {
+        std::vector<std::size_t> column;
+        for (const std::string& counter : run.draw_counters)
+            column.push_back(static_cast<std::size_t>(
+                std::find(table.header.begin() + static_cast<std::ptrdiff_t>(keys), table.header.end(), counter) -
+                table.header.begin()));
+        std::fill(row.begin(), row.end(), "");
+        row[0] = run.design;
+        for (const pipeline::DrawResult& draw : run.draws) {
+            row[1] = text(std::uint64_t{draw.draw});
+            row[2] = draw.name;
+            for (std::size_t i = 0; i < draw.counters.size(); ++i) row[column[i]] = text(draw.counters[i]);
+            table.lines += sim::csv_line(row);
+        }
+    }
+    return table;
 }
 
 Table passes_table(const Comparison& comparison) {

@@ -12,6 +12,7 @@ struct Table {
     std::string name;                ///< of the file: "designs.csv"
     std::vector<std::string> header; ///< with units: "cycles [core cycles]"
     std::vector<std::vector<std::string>> rows;
+    std::string lines = {}; ///< further rows, written as text
 
     std::string text() const;
 };

@@ -44,7 +44,7 @@ std::string hazards_text(const Comparison& comparison, TerminalStyle style) {
                        {"H4", "torn read"},
                        {"total", "fragments"},
                        {"per million", "fragments"}},
-                      rows, style.colour) +
+                      rows, style) +
            wrap(std::string(hazard_kinds_explained), style.columns, 2);
 }
 

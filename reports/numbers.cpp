@@ -16,12 +16,6 @@ std::string three_digits(double number) {
 
 } // namespace
 
-std::string with_commas(std::uint64_t number) {
-    std::string text = std::to_string(number);
-    for (std::size_t at = text.size(); at > 3; at -= 3) text.insert(at - 3, 1, ',');
-    return text;
-}
-
 std::string short_number(double number) {
     if (!std::isfinite(number)) return "-";
     if (number < 10000) return number == std::floor(number) ? fmt::format("{:.0f}", number) : three_digits(number);

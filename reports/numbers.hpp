@@ -1,12 +1,15 @@
 // Numbers as people read them.
 #pragma once
 
+#include "sim/counted.hpp"
+
 #include <cstdint>
 #include <string>
 
 namespace reports {
 
-std::string with_commas(std::uint64_t number); ///< 1234567 -> "1,234,567"
+using sim::counted;
+using sim::with_commas;
 
 /// Three significant digits and a letter: 1234567 -> "1.23M"; below 10,000 as they are.
 std::string short_number(double number);

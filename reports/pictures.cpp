@@ -63,8 +63,8 @@ Picture depth_layer(Size size, const KBufferLayout& layout, std::span<const floa
 Legend hazard_legend(const pipeline::HazardCounts& counts, const std::string& design) {
     Legend legend;
     legend.title = counts.total() == 0 ? fmt::format("{}: no hazards", design)
-                                       : fmt::format("{}: {} hazards, {} pixels", design, with_commas(counts.total()),
-                                                     with_commas(counts.pixels));
+                                       : fmt::format("{}: {}, {}", design, counted(counts.total(), "hazard"),
+                                                     counted(counts.pixels, "pixel"));
     for (std::size_t cause = 0; cause < pipeline::hazard_classes; ++cause)
         legend.swatches.push_back(
             {hazard_colours[cause], fmt::format("{}: {}", hazard_texts[cause],

@@ -23,10 +23,7 @@ std::string write_report(const Comparison& comparison, const fs::path& directory
     const auto check_stop = [&options] {
         if (options.stop != nullptr && *options.stop) throw sim::Interrupted();
     };
-    make_directory(directory);
-    // A page of an earlier comparison would show pictures of this one.
-    std::error_code missing;
-    fs::remove(directory / "report.html", missing);
+    begin_report_folder(directory);
     std::vector<PictureFile> pictures;
     if (options.images) pictures = write_pictures(comparison, directory, options.stop);
     std::vector<std::string> tables;
@@ -38,9 +35,8 @@ std::string write_report(const Comparison& comparison, const fs::path& directory
     check_stop();
     write_file(directory / "result.json", result_text(result_json(comparison)));
     write_file(directory / "report.html", html_page(comparison, pictures, tables));
-    return fmt::format(
-        "Written to {}: report.html, result.json, {} tables (.csv), {} pictures (.png, .exr for measuring)",
-        directory.string(), tables.size(), pictures.size());
+    return fmt::format("Written to {}: report.html, result.json, {} (.csv), {} (.png, .exr for measuring)",
+                       directory.string(), counted(tables.size(), "table"), counted(pictures.size(), "picture"));
 }
 
 } // namespace reports

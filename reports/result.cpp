@@ -3,6 +3,7 @@
 #include "reports/hazard_text.hpp"
 #include "reports/run_numbers.hpp"
 #include "ropsim_build.hpp"
+#include "sim/described_json.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -12,6 +13,16 @@ namespace reports {
 using nlohmann::ordered_json;
 
 namespace {
+
+constexpr std::size_t most_notes_listed = 100;
+
+ordered_json notes_json(const std::vector<std::string>& notes) {
+    ordered_json list(notes);
+    if (notes.size() <= most_notes_listed) return list;
+    list = std::vector<std::string>(notes.begin(), notes.begin() + most_notes_listed);
+    list.push_back(fmt::format("and {} more notes", notes.size() - most_notes_listed));
+    return list;
+}
 
 ordered_json scene_json(const Comparison& comparison) {
     const SceneFacts& scene = comparison.scene;
@@ -28,7 +39,7 @@ ordered_json scene_json(const Comparison& comparison) {
                          {"height", comparison.height()},
                          {"samples", comparison.samples()},
                          {"workload", frame.workload},
-                         {"notes", scene.notes}};
+                         {"notes", notes_json(scene.notes)}};
     if (frame.program)
         json["kbuffer"] = {{"program", frame.program->id()},
                            {"k", frame.program->k()},
@@ -49,19 +60,25 @@ ordered_json gpu_json(const GpuFacts& gpu) {
 
 // Rates are over the time of the runs themselves, so that they do not depend on how many ran at once.
 ordered_json host_json(const Comparison& comparison) {
-    double seconds = 0, cycles = 0, fragments = 0;
+    double seconds = 0, cpu_seconds = 0, cycles = 0, fragments = 0;
     ordered_json runs = ordered_json::array();
     for (const pipeline::RunResult& run : comparison.runs) {
+        runs.push_back({{"id", run.design},
+                        {"seconds", run.host_seconds},
+                        {"cpu_seconds", run.cpu_seconds},
+                        {"ticks", run.host_ticks}});
+        if (run.host_seconds == 0) continue; // has the numbers of another one
         seconds += run.host_seconds;
+        cpu_seconds += run.cpu_seconds;
         cycles += static_cast<double>(run.cycles);
         fragments += static_cast<double>(run.fragments);
-        runs.push_back({{"id", run.design}, {"seconds", run.host_seconds}, {"ticks", run.host_ticks}});
     }
-    const auto rate = [seconds](double count) { return seconds > 0 ? count / seconds : 0.0; };
+    const auto rate = [](double count, double in) { return in > 0 ? count / in : 0.0; };
     return {{"seconds", comparison.host.seconds},
             {"front_end_seconds", comparison.host.front_end_seconds},
-            {"cycles_per_second", rate(cycles)},
-            {"fragments_per_second", rate(fragments)},
+            {"cycles_per_second", rate(cycles, seconds)},
+            {"fragments_per_second", rate(fragments, seconds)},
+            {"cycles_per_cpu_second", rate(cycles, cpu_seconds)},
             {"peak_bytes", comparison.host.peak_bytes},
             {"threads", comparison.host.threads},
             {"designs", std::move(runs)}};
@@ -138,11 +155,37 @@ ordered_json passes_json(const pipeline::RunResult& run) {
     return list;
 }
 
+constexpr std::size_t most_draws_listed = 64;
+
+ordered_json draw_counters_json(const pipeline::RunResult& run, const std::vector<std::uint64_t>& counters) {
+    ordered_json json = ordered_json::object();
+    for (std::size_t i = 0; i < counters.size(); ++i) json[run.draw_counters.at(i)] = counters[i];
+    return json;
+}
+
 ordered_json draws_json(const pipeline::RunResult& run) {
     ordered_json list = ordered_json::array();
+    if (run.draws.size() > most_draws_listed) return list;
     for (const pipeline::DrawResult& draw : run.draws)
-        list.push_back({{"draw", draw.draw}, {"name", draw.name}, {"counters", object_or_empty(draw.counters)}});
+        list.push_back(
+            {{"draw", draw.draw}, {"name", draw.name}, {"counters", draw_counters_json(run, draw.counters)}});
     return list;
+}
+
+// In place of a list that would be too long. The cycles are the first and the last of them all.
+ordered_json draws_summed_json(const pipeline::RunResult& run) {
+    std::vector<std::uint64_t> sums(run.draw_counters.size());
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+        const bool first = run.draw_counters[i] == "first_cycle", last = run.draw_counters[i] == "last_cycle";
+        for (const pipeline::DrawResult& draw : run.draws) {
+            const std::uint64_t value = draw.counters.at(i);
+            if (first)
+                sums[i] = sums[i] == 0 || (value != 0 && value < sums[i]) ? value : sums[i];
+            else
+                sums[i] = last ? std::max(sums[i], value) : sums[i] + value;
+        }
+    }
+    return {{"draws", run.draws.size()}, {"counters", draw_counters_json(run, sums)}};
 }
 
 // What every run has, in the order of the first.
@@ -182,7 +225,8 @@ ordered_json design_json(const Comparison& comparison, std::size_t number, const
                          {"wrong_pixels", run.wrong_pixels},
                          {"tied_pixels", run.tied_pixels},
                          {"overflow_pixels", run.overflow_pixels},
-                         {"unexplained_pixels", run.unexplained_pixels},
+                         {"unexplained_pixels", run.unexplained_pixels()},
+                         {"wrong_because", sim::to_json(run.wrong_because)},
                          {"lost_fragments", run.lost_fragments},
                          {"lost_updates", run.lost_updates},
                          {"layers", layers_json(run)},
@@ -194,6 +238,7 @@ ordered_json design_json(const Comparison& comparison, std::size_t number, const
                          {"supports", object_or_empty(comparison.design_support.at(number))},
                          {"passes", passes_json(run)},
                          {"draws", draws_json(run)}};
+    if (run.draws.size() > most_draws_listed) json["draws_summed"] = draws_summed_json(run);
     // The comparison's "needs" states what all designs have in common.
     if (run.built != common.built || run.left_out != common.left_out)
         json["needs"] = needs_json(run.built, run.left_out);

@@ -35,8 +35,12 @@ double cycles_per_second(const pipeline::RunResult& run) {
     return run.host_seconds > 0 ? static_cast<double>(run.cycles) / run.host_seconds : 0.0;
 }
 
+double cycles_per_cpu_second(const pipeline::RunResult& run) {
+    return run.cpu_seconds > 0 ? static_cast<double>(run.cycles) / run.cpu_seconds : 0.0;
+}
+
 std::string samples_text(const Comparison& comparison) {
-    return comparison.samples() == 1 ? "" : fmt::format(", {} samples per pixel", comparison.samples());
+    return comparison.samples() == 1 ? "" : fmt::format(", {} per pixel", counted(comparison.samples(), "sample"));
 }
 
 std::optional<double> bytes_over(const pipeline::RunResult& run, std::string_view link) {

@@ -21,6 +21,8 @@ double hazards_per_million(const pipeline::RunResult& run, pipeline::HazardKind 
 std::optional<double> on_chip_bytes(const pipeline::RunResult& run);
 /// Simulated core cycles per second of host time; 0 when it was not measured.
 double cycles_per_second(const pipeline::RunResult& run);
+/// The same per second of the thread that ran it, which does not count the time it waited for a core.
+double cycles_per_cpu_second(const pipeline::RunResult& run);
 /// Bytes over a link (a key of RunResult::bytes, for example "dram") per fragment; nothing when there is no such link.
 std::optional<double> bytes_per_fragment(const pipeline::RunResult& run, std::string_view link);
 /// All bytes over a link.

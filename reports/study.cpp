@@ -1,13 +1,17 @@
 #include "reports/study.hpp"
 
 #include "pipeline/functional/parallel.hpp"
+#include "reports/study_points.hpp"
 #include "reports/study_runs.hpp"
 #include "sim/check.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <fmt/format.h>
 #include <mutex>
+#include <set>
+#include <thread>
 
 namespace reports {
 
@@ -90,26 +94,105 @@ std::vector<StudyValue> run_series(const Study& study, const StudySeries& series
     return values;
 }
 
-StudyResult run_study(const Study& study, const std::vector<std::string>& gpus, const GeometryRunOptions& options) {
+namespace {
+
+/// Runs the cells of a study, each a series at a point, and puts their values into the result.
+class StudyRun {
+  public:
+    StudyRun(StudyResult& result, const GeometryRunOptions& options, StudyPoints* points)
+        : result_(result),
+          options_(options),
+          points_(points),
+          cells_(result.study.points.size() * result.study.series.size()) {
+        result.values.resize(cells_ * result.study.gpus.size());
+    }
+
+    void run() {
+        pipeline::parallel_for(options_.threads, cells_, [this](std::size_t cell) { begin(cell); });
+        // Another process is at these: it finishes them, or ends and leaves them.
+        for (const Waiting& one : waiting_)
+            while (!finish(one)) std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        if (points_ != nullptr) points_->forget_others(keys_of_all_);
+    }
+
+  private:
+    struct Waiting {
+        std::size_t cell = 0;
+        std::string key;
+    };
+
+    const StudySeries& series(std::size_t cell) const {
+        return result_.study.series[cell % result_.study.series.size()];
+    }
+    const StudyPoint& point(std::size_t cell) const { return result_.study.points[cell / result_.study.series.size()]; }
+
+    void begin(std::size_t cell) {
+        Waiting one{cell, {}};
+        if (points_ != nullptr) {
+            one.key = keys_.key_of(result_.study, series(cell), point(cell), result_.study.gpus, options_.fidelity);
+            const std::lock_guard lock(mutex_);
+            keys_of_all_.insert(one.key);
+        }
+        if (finish(one)) return;
+        const std::lock_guard lock(mutex_);
+        waiting_.push_back(std::move(one));
+    }
+
+    // False where another process is at it.
+    bool finish(const Waiting& one) {
+        if (options_.stop != nullptr && *options_.stop) throw sim::Interrupted();
+        if (points_ == nullptr) return store(one.cell, compute(one.cell)), true;
+        if (found(one)) return true;
+        const PointLock lock = points_->lock(one.key);
+        if (!lock.held()) return false;
+        if (found(one)) return true; // finished just before the lock was had
+        std::vector<StudyValue> values = compute(one.cell);
+        points_->keep(one.key, values);
+        store(one.cell, std::move(values));
+        return true;
+    }
+
+    bool found(const Waiting& one) {
+        auto values = points_->find(one.key);
+        if (!values || values->size() != result_.study.gpus.size()) return false;
+        store(one.cell, std::move(*values));
+        const std::lock_guard lock(mutex_);
+        ++result_.found;
+        return true;
+    }
+
+    std::vector<StudyValue> compute(std::size_t cell) const {
+        return run_series(result_.study, series(cell), point(cell), result_.study.gpus, options_);
+    }
+
+    void store(std::size_t cell, std::vector<StudyValue> values) {
+        std::move(values.begin(), values.end(),
+                  result_.values.begin() + static_cast<std::ptrdiff_t>(cell * result_.study.gpus.size()));
+        const std::lock_guard lock(mutex_);
+        ++done_;
+        if (options_.progress) options_.progress(static_cast<double>(done_) / static_cast<double>(cells_));
+    }
+
+    StudyResult& result_;
+    const GeometryRunOptions& options_;
+    StudyPoints* points_;
+    StudyKeys keys_;
+    std::size_t cells_, done_ = 0;
+    std::mutex mutex_;
+    std::vector<Waiting> waiting_;
+    std::set<std::string> keys_of_all_;
+};
+
+} // namespace
+
+StudyResult run_study(const Study& study, const std::vector<std::string>& gpus, const GeometryRunOptions& options,
+                      StudyPoints* points) {
     StudyResult result{study, {}, options.fidelity};
     if (study.of_designs() && options.fidelity != Fidelity::detailed)
         throw sim::InputError(fmt::format("study {}: designs are only run in detail", study.name));
     if (!gpus.empty()) result.study.gpus = gpus;
     if (result.study.gpus.empty()) result.study.gpus = {"neutral"};
-    const std::size_t cells = study.points.size() * study.series.size();
-    const std::size_t each = result.study.gpus.size();
-    result.values.resize(cells * each);
-    std::mutex mutex;
-    std::size_t done = 0;
-    pipeline::parallel_for(options.threads, cells, [&](std::size_t cell) {
-        const StudyPoint& point = study.points[cell / study.series.size()];
-        const StudySeries& series = study.series[cell % study.series.size()];
-        std::vector<StudyValue> values = run_series(study, series, point, result.study.gpus, options);
-        std::move(values.begin(), values.end(), result.values.begin() + static_cast<std::ptrdiff_t>(cell * each));
-        const std::lock_guard lock(mutex);
-        ++done;
-        if (options.progress) options.progress(static_cast<double>(done) / static_cast<double>(cells));
-    });
+    StudyRun(result, options, points).run();
     finish(result);
     return result;
 }

@@ -75,7 +75,10 @@ struct StudyResult {
     Study study;
     std::vector<StudyValue> values; ///< by point, then series, then GPU
     Fidelity fidelity = Fidelity::detailed;
+    std::size_t found = 0; ///< series at points that an earlier run, or another process, had finished
 };
+
+class StudyPoints;
 
 /// What a study of geometry feed may measure.
 const std::vector<std::string>& study_measures();
@@ -94,7 +97,9 @@ std::vector<StudyValue> run_series(const Study& study, const StudySeries& series
 
 /// Throws sim::InputError for a file that asks for what there is not.
 /// @param gpus empty: those that the study names
-StudyResult run_study(const Study& study, const std::vector<std::string>& gpus, const GeometryRunOptions& options);
+/// @param points where finished ones are kept and found; null: nowhere
+StudyResult run_study(const Study& study, const std::vector<std::string>& gpus, const GeometryRunOptions& options,
+                      StudyPoints* points = nullptr);
 
 std::string studies_text(const std::vector<std::string>& names, TerminalStyle style);
 std::string study_text(const StudyResult& result, TerminalStyle style);

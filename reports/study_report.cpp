@@ -4,6 +4,7 @@
 #include "reports/numbers.hpp"
 #include "reports/result.hpp"
 #include "reports/study.hpp"
+#include "reports/study_runs.hpp"
 #include "reports/text_table.hpp"
 
 #include <cmath>
@@ -63,14 +64,16 @@ std::string plot_text(const Plot& plot, TerminalStyle style) {
         columns.push_back({line.name, "", false});
         for (std::size_t i = 0; i < rows.size(); ++i) rows[i].push_back(number_text(line.values[i]));
     }
-    return text_table(columns, rows, style.colour);
+    return text_table(columns, rows, style);
 }
 
 std::string how_run(const StudyResult& result) {
     const Study& study = result.study;
     if (!study.of_designs()) return std::string(sim::enum_name(result.fidelity));
-    const std::string seeds = study.seeds == 1 ? "one run" : fmt::format("mean of {} seeds", study.seeds);
-    return fmt::format("{} pixels, {}", study.size, seeds);
+    const std::string seeds = study.seeds == 1 ? "one run" : "mean of " + counted(study.seeds, "seed");
+    const std::string first = filled(study.size, study.points.front(), study),
+                      last = filled(study.size, study.points.back(), study);
+    return fmt::format("{} pixels, {}", first == last ? first : fmt::format("{} to {}", first, last), seeds);
 }
 
 // Columns of the table: numbers of geometry feed under short names with units, those of designs under their titles.
@@ -123,7 +126,7 @@ std::string studies_text(const std::vector<std::string>& names, TerminalStyle st
         const Study study = load_study(name);
         rows.push_back({name, study.question});
     }
-    return text_table({{"study", "", true}, {"question", "", true}}, rows, style.colour);
+    return text_table({{"study", "", true}, {"question", "", true}}, rows, style);
 }
 
 std::string study_text(const StudyResult& result, TerminalStyle style) {

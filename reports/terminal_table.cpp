@@ -3,6 +3,7 @@
 #include "reports/left_out.hpp"
 #include "reports/numbers.hpp"
 #include "reports/run_numbers.hpp"
+#include "reports/wrong_text.hpp"
 
 #include <algorithm>
 #include <array>
@@ -26,7 +27,7 @@ struct Column {
     const char* title;
     const char* unit;
 };
-constexpr std::array<Column, 11> columns{{{"design", ""},
+constexpr std::array<Column, 12> columns{{{"design", ""},
                                           {"cycles", ""},
                                           {"time", "ms"},
                                           {"speed", "x"},
@@ -36,7 +37,8 @@ constexpr std::array<Column, 11> columns{{{"design", ""},
                                           {"wrong", "pixels"},
                                           {"DRAM", "B/fragm"},
                                           {"on chip", "KiB"},
-                                          {"host", "cyc/s"}}};
+                                          {"host", "cyc/s"},
+                                          {"CPU", "cyc/s"}}};
 
 std::string paint(std::string text, const char* code, bool colour) {
     return colour ? fmt::format("\033[{}m{}\033[0m", code, text) : text;
@@ -54,6 +56,9 @@ Cell error_cell(std::uint64_t number, bool exact) {
 
 std::string optional_text(std::optional<double> number) { return number ? fmt::format("{:.1f}", *number) : "-"; }
 
+// Of a design that another one was run for there is none.
+std::string rate_text(double rate) { return rate > 0 ? short_number(rate) : "-"; }
+
 Row row_of(const RunResult& run, const std::string& name, const RunResult& base, bool exact) {
     const pipeline::HazardCounts& hazards = run.hazards;
     const double relative = run.cycles > 0 && base.cycles > 0 ? milliseconds(base) / milliseconds(run) : 0.0;
@@ -68,7 +73,8 @@ Row row_of(const RunResult& run, const std::string& name, const RunResult& base,
             {count_text(run.wrong_pixels, exact), run.wrong_pixels > 0 ? Emphasis::bad : Emphasis::good},
             {optional_text(bytes_per_fragment(run, "dram"))},
             {optional_text(area ? std::optional(*area / 1024) : std::nullopt)},
-            {short_number(cycles_per_second(run))}};
+            {rate_text(cycles_per_second(run))},
+            {rate_text(cycles_per_cpu_second(run))}};
 }
 
 using Widths = std::array<std::size_t, columns.size()>;
@@ -93,9 +99,11 @@ std::string padded(const std::string& text, std::size_t width, std::size_t colum
     return column == 0 ? fmt::format("{:<{}}", text, width) : fmt::format("  {:>{}}", text, width);
 }
 
-std::string line_of(const Row& row, const Widths& widths, bool colour) {
+using Block = std::vector<std::size_t>; ///< numbers of the columns that stand side by side
+
+std::string line_of(const Row& row, const Widths& widths, const Block& block, bool colour) {
     std::string line;
-    for (std::size_t i = 0; i < row.size(); ++i) {
+    for (const std::size_t i : block) {
         const std::string text = padded(row[i].text, widths[i], i);
         line += row[i].emphasis == Emphasis::none ? text
                                                   : paint(text, row[i].emphasis == Emphasis::bad ? "31" : "32", colour);
@@ -108,9 +116,9 @@ std::string without_trailing_blanks(std::string line) {
     return line;
 }
 
-std::string header_of(const Widths& widths, bool colour) {
+std::string header_of(const Widths& widths, const Block& block, bool colour) {
     std::string titles, units;
-    for (std::size_t i = 0; i < columns.size(); ++i) {
+    for (const std::size_t i : block) {
         titles += padded(columns[i].title, widths[i], i);
         units += padded(columns[i].unit, widths[i], i);
     }
@@ -146,9 +154,11 @@ std::string equal_area_text(const Comparison& comparison, TerminalStyle style) {
     if (!comparison.equal_area) return "";
     std::string text;
     for (const EqualArea::Unfit& unfit : comparison.equal_area->does_not_fit)
-        text += paint(fmt::format("{}  does not fit: needs {} bytes\n", unfit.variant.label, with_commas(unfit.needed)),
-                      "31", style.colour);
-    text += fmt::format("equal area: {} bytes on chip; tile caches got\n", with_commas(comparison.equal_area->bytes));
+        text +=
+            paint(fmt::format("{}  does not fit: needs {}\n", unfit.variant.label, sim::counted(unfit.needed, "byte")),
+                  "31", style.colour);
+    text +=
+        fmt::format("equal area: {} on chip; tile caches got\n", sim::counted(comparison.equal_area->bytes, "byte"));
     for (std::size_t i = 0; i < comparison.runs.size(); ++i)
         text += fmt::format("  {}: {} bytes\n", comparison.variants.at(i).label, caches_text(comparison.runs[i]));
     return text;
@@ -166,6 +176,8 @@ std::string variants_text(const Comparison& comparison, TerminalStyle style) {
 } // namespace
 
 std::string wrap(const std::string& text, std::size_t columns_allowed, std::size_t indent) {
+    constexpr std::size_t usual_indent = 4;
+    if (indent > columns_allowed / 2) indent = usual_indent; // words need room, too
     std::string result, line;
     for (std::size_t begin = 0; begin < text.size();) {
         const std::size_t end = std::min(text.find(' ', begin), text.size());
@@ -187,10 +199,11 @@ std::string heading(const Comparison& comparison, TerminalStyle style) {
         method += fmt::format(" ({}, k = {}, {} B per pixel)", program->id(), program->k(), program->bytes_per_pixel());
     std::string overflow;
     if (const std::uint64_t pixels = overflow_pixels(comparison); pixels > 0)
-        overflow = fmt::format("; {} pixels have more than k fragments", with_commas(pixels));
+        overflow =
+            fmt::format("; {} more than k fragments", sim::counted(pixels, "pixel") + (pixels == 1 ? " has" : " have"));
     const std::string text =
-        fmt::format("{}: {} triangles drawn at {} x {}{}; {}{}; GPU {}; seed {}", comparison.scene.name,
-                    with_commas(comparison.scene.triangles_drawn), comparison.width(), comparison.height(),
+        fmt::format("{}: {} drawn at {} x {}{}; {}{}; GPU {}; seed {}", comparison.scene.name,
+                    sim::counted(comparison.scene.triangles_drawn, "triangle"), comparison.width(), comparison.height(),
                     samples_text(comparison), method, overflow, comparison.gpu.name, comparison.seed);
     return wrap(text, style.columns, 2);
 }
@@ -210,8 +223,12 @@ std::string designs_text(const Comparison& comparison, TerminalStyle style) {
         labels = form.labels;
         if (total(widths) <= style.columns) break;
     }
-    std::string text = header_of(widths, style.colour);
-    for (const Row& row : rows) text += line_of(row, widths, style.colour);
+    std::string text;
+    for (const Block& block : folded({widths.begin(), widths.end()}, style)) {
+        text += (text.empty() ? "" : "\n") + header_of(widths, block, style.colour);
+        for (const Row& row : rows) text += line_of(row, widths, block, style.colour);
+    }
+    for (const std::string& line : wrong_lines(comparison)) text += wrap(line, style.columns, 2);
     return text + equal_area_text(comparison, style) + base_text(comparison, labels) +
            (labels ? "" : variants_text(comparison, style));
 }

@@ -2,15 +2,11 @@
 #pragma once
 
 #include "reports/comparison_result.hpp"
+#include "reports/text_table.hpp"
 
 #include <string>
 
 namespace reports {
-
-struct TerminalStyle {
-    bool colour = false;       ///< ANSI colours
-    std::size_t columns = 120; ///< characters a line may have
-};
 
 /// One line on what was drawn on what.
 std::string heading(const Comparison& comparison, TerminalStyle style);

@@ -10,10 +10,10 @@ namespace reports {
 namespace {
 
 std::string line_of(const std::vector<std::string>& cells, const std::vector<TextColumn>& columns,
-                    const std::vector<std::size_t>& widths) {
+                    const std::vector<std::size_t>& widths, const std::vector<std::size_t>& block) {
     std::string line;
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-        if (i > 0) line += "  ";
+    for (const std::size_t i : block) {
+        if (i != block.front()) line += "  ";
         line += columns[i].is_text ? fmt::format("{:<{}}", cells[i], widths[i])
                                    : fmt::format("{:>{}}", cells[i], widths[i]);
     }
@@ -23,8 +23,23 @@ std::string line_of(const std::vector<std::string>& cells, const std::vector<Tex
 
 } // namespace
 
+std::vector<std::vector<std::size_t>> folded(const std::vector<std::size_t>& widths, TerminalStyle style) {
+    std::vector<std::vector<std::size_t>> blocks(1);
+    std::size_t width = 0;
+    for (std::size_t i = 0; i < widths.size(); ++i) {
+        const bool fits = blocks.back().empty() || width + 2 + widths[i] <= style.columns;
+        if (!fits && blocks.back().size() > 1 && style.columns < TerminalStyle::widest) {
+            blocks.push_back({0});
+            width = widths[0];
+        }
+        width += (blocks.back().empty() ? 0 : 2) + widths[i];
+        blocks.back().push_back(i);
+    }
+    return blocks;
+}
+
 std::string text_table(const std::vector<TextColumn>& columns, const std::vector<std::vector<std::string>>& rows,
-                       bool colour) {
+                       TerminalStyle style) {
     std::vector<std::size_t> widths;
     std::vector<std::string> titles, units;
     for (const TextColumn& column : columns) {
@@ -36,11 +51,15 @@ std::string text_table(const std::vector<TextColumn>& columns, const std::vector
         CHECK(row.size() == columns.size());
         for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
     }
-    const std::string head = line_of(titles, columns, widths);
-    std::string text = (colour ? fmt::format("\033[1m{}\033[0m", head) : head) + "\n";
-    if (std::any_of(units.begin(), units.end(), [](const std::string& unit) { return !unit.empty(); }))
-        text += line_of(units, columns, widths) + "\n";
-    for (const auto& row : rows) text += line_of(row, columns, widths) + "\n";
+    const bool with_units =
+        std::any_of(units.begin(), units.end(), [](const std::string& unit) { return !unit.empty(); });
+    std::string text;
+    for (const auto& block : folded(widths, style)) {
+        const std::string head = line_of(titles, columns, widths, block);
+        text += (text.empty() ? "" : "\n") + (style.colour ? fmt::format("\033[1m{}\033[0m", head) : head) + "\n";
+        if (with_units) text += line_of(units, columns, widths, block) + "\n";
+        for (const auto& row : rows) text += line_of(row, columns, widths, block) + "\n";
+    }
     return text;
 }
 

@@ -3,12 +3,11 @@
 #include "ropsim_build.hpp"
 #include "sim/check.hpp"
 #include "sim/described.hpp"
+#include "sim/read_file.hpp"
 #include "sim/suggest.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
-#include <fstream>
-#include <iterator>
 
 namespace reports {
 
@@ -119,9 +118,8 @@ void TomlTable::expect_all_read() const {
 }
 
 void read_toml_file(const std::filesystem::path& path, const std::function<void(TomlTable&)>& read) {
-    std::ifstream file(path, std::ios::binary);
-    if (!file.is_open()) throw sim::InputError(fmt::format("{}: cannot be read", path.string()));
-    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    constexpr std::uint64_t most_bytes = std::uint64_t{16} << 20U;
+    const std::string text = sim::read_file(path, most_bytes);
     try {
         const toml::table table = toml::parse(text, std::string_view(path.string()));
         TomlTable root(table, path.string());

@@ -1,11 +1,10 @@
 #include "sim/config.hpp"
 
+#include "sim/read_file.hpp"
 #include "sim/suggest.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
-#include <fstream>
-#include <iterator>
 #include <sstream>
 #include <toml++/toml.h>
 
@@ -122,13 +121,8 @@ Config Config::from_toml_text(std::string_view text, const std::string& name) {
 }
 
 Config Config::from_toml_file(const std::filesystem::path& path) {
-    std::error_code failed;
-    std::ifstream file(path, std::ios::binary);
-    if (!file.is_open() || std::filesystem::is_directory(path, failed))
-        throw InputError(fmt::format("{}: cannot be read", path.string()));
-    const std::string text{std::istreambuf_iterator<char>(file), {}};
-    if (file.bad()) throw InputError(fmt::format("{}: cannot be read", path.string()));
-    return from_toml_text(text, path.string());
+    constexpr std::uint64_t most_bytes = std::uint64_t{16} << 20U;
+    return from_toml_text(read_file(path, most_bytes), path.string());
 }
 
 void Config::complete_from(const Config& base) {

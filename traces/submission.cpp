@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <optional>
 
 namespace traces {
 
@@ -67,30 +68,34 @@ class Resubmission {
   public:
     Resubmission(const Frame& frame, const pipeline::SubmissionPlan& plan)
         : frame_(frame), plan_(plan), result_(frame), resources_(std::make_shared<Resources>(*frame.resources)) {
-        if (plan.flush_draws) add_flush_geometry();
+        if (plan.flush_draws) add_flush();
     }
 
     Frame frame() {
         for (std::size_t i = 0; i < frame_.passes.size(); ++i)
-            if (frame_.passes[i].kbuffer) result_.passes[i].draws = resubmitted(frame_.passes[i]);
+            if (frame_.passes[i].kbuffer) resubmit(result_.passes[i]);
         resources_->place();
         result_.resources = resources_;
         return std::move(result_);
     }
 
   private:
-    std::vector<std::uint32_t> resubmitted(const pipeline::Pass& pass) {
+    void resubmit(pipeline::Pass& pass) {
         std::vector<SortedTriangle> triangles;
         for (const std::uint32_t draw : pass.draws) add_triangles(triangles, frame_, draw);
         if (plan_.sort_by_centroid) radix_sort(triangles);
         write_indices(triangles);
-        std::vector<std::uint32_t> draws;
+        const std::vector<std::uint32_t> lists = add_lists(pass.draws, triangles.size());
         for (std::size_t begin = 0; begin < triangles.size();) {
             const std::size_t end = end_of_draw(triangles, begin);
-            add_draw(draws, triangles, begin, end);
+            const std::uint32_t draw = triangles[begin].draw;
+            pass.parts.push_back({draw, triangles[begin].instance, lists[draw], static_cast<std::uint32_t>(begin),
+                                  static_cast<std::uint32_t>(end - begin)});
+            if (flush_) pass.parts.push_back(*flush_);
             begin = end;
         }
-        return draws;
+        pass.parts.shrink_to_fit();
+        if (flush_ && !triangles.empty()) pass.draws.push_back(flush_->draw);
     }
 
     // Triangles of one draw and one instance that follow each other, up to the size of a batch.
@@ -116,35 +121,36 @@ class Resubmission {
         resources_->buffers.push_back(std::move(buffer));
     }
 
-    void add_draw(std::vector<std::uint32_t>& draws, const std::vector<SortedTriangle>& triangles, std::size_t begin,
-                  std::size_t end) {
-        const Draw& from = frame_.draws[triangles[begin].draw];
-        Geometry geometry = frame_.resources->geometries[from.geometry];
-        geometry.topology = pipeline::Topology::triangles;
-        geometry.index_type = pipeline::IndexType::u32;
-        geometry.index_buffer = index_buffer_;
-        geometry.index_offset = begin * 12;
-        geometry.index_count = static_cast<std::uint32_t>((end - begin) * 3);
-        geometry.primitive_restart = false;
-        geometry.runs.clear();
-        push_draw(draws, {from.name, 0, from.material, {from.instances[triangles[begin].instance]}},
-                  std::move(geometry));
-        if (plan_.flush_draws) push_draw(draws, flush_draw_, flush_geometry_);
+    // A geometry for each draw: its vertices, and the list of the triangles of all draws, of which its parts are runs.
+    // Returns their numbers, by draw.
+    std::vector<std::uint32_t> add_lists(const std::vector<std::uint32_t>& draws, std::size_t triangles) {
+        std::vector<std::uint32_t> numbers(frame_.draws.size());
+        for (const std::uint32_t draw : draws) {
+            Geometry geometry = frame_.resources->geometries[frame_.draws[draw].geometry];
+            geometry.topology = pipeline::Topology::triangles;
+            geometry.index_type = pipeline::IndexType::u32;
+            geometry.index_buffer = index_buffer_;
+            geometry.index_offset = 0;
+            geometry.index_count = static_cast<std::uint32_t>(triangles * 3);
+            geometry.primitive_restart = false;
+            geometry.runs.clear();
+            numbers[draw] = add_geometry(std::move(geometry));
+        }
+        return numbers;
     }
 
-    void push_draw(std::vector<std::uint32_t>& draws, Draw draw, Geometry geometry) {
-        draw.geometry = static_cast<std::uint32_t>(resources_->geometries.size());
+    std::uint32_t add_geometry(Geometry geometry) {
         resources_->geometries.push_back(std::move(geometry));
-        draws.push_back(static_cast<std::uint32_t>(result_.draws.size()));
-        result_.draws.push_back(std::move(draw));
+        return static_cast<std::uint32_t>(resources_->geometries.size() - 1);
     }
 
     // The flushing quad writes nothing, so what it costs is its draw call and the time it covers the screen, which the
     // fragment scheduler counts; its own triangle lies in one point.
-    void add_flush_geometry() {
+    void add_flush() {
         BlankDraw blank = add_blank_draw(*resources_, "flush");
-        flush_geometry_ = std::move(blank.geometry);
-        flush_draw_ = std::move(blank.draw);
+        blank.draw.geometry = add_geometry(std::move(blank.geometry));
+        flush_ = {static_cast<std::uint32_t>(result_.draws.size()), 0, blank.draw.geometry, 0, 1};
+        result_.draws.push_back(std::move(blank.draw));
     }
 
     const Frame& frame_;
@@ -152,8 +158,7 @@ class Resubmission {
     Frame result_;
     std::shared_ptr<Resources> resources_;
     std::uint32_t index_buffer_ = 0;
-    Geometry flush_geometry_;
-    Draw flush_draw_;
+    std::optional<pipeline::DrawPart> flush_; ///< the draw behind each part
 };
 
 } // namespace

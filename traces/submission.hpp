@@ -9,9 +9,10 @@
 namespace traces {
 
 /// The frame as `plan` wants it. Triangles of all draws of a k-buffer pass are sorted together, front to back by the
-/// eye-space depth of their centroids, equal depths in their old order; each run of triangles of one draw becomes a
-/// draw of its own, of at most plan.batch_triangles triangles. Strips and fans become lists. Other passes stay as they
-/// are. Draws keep their names; no triangle is lost. Throws sim::InputError when there are more than 2^32 - 1 indices.
+/// eye-space depth of their centroids, equal depths in their old order; each run of triangles of one instance of a draw
+/// becomes a part (pipeline::DrawPart), of at most plan.batch_triangles triangles. Strips and fans become lists. Other
+/// passes stay as they are. Draws keep their numbers; a draw "flush" may follow them. No triangle is lost. Throws
+/// sim::InputError when there are more than 2^32 - 1 indices.
 pipeline::Frame submitted(const pipeline::Frame& frame, const pipeline::SubmissionPlan& plan);
 
 } // namespace traces

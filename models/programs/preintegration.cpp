@@ -143,7 +143,7 @@ glm::vec4 between(glm::vec4 a, glm::vec4 b, float share) { return a + share * (b
 
 PreintegratedTable::PreintegratedTable(const TransferFunction& transfer, float longest, std::uint32_t scalars,
                                        std::uint32_t lengths)
-    : longest_(longest), scalars_(scalars), lengths_(lengths) {
+    : transfer_(transfer), longest_(longest), scalars_(scalars), lengths_(lengths) {
     check(transfer);
     if (!std::isfinite(longest) || !(longest > 0.0F))
         throw sim::InputError(fmt::format("pre-integrated table: expected a longest gap above 0, got {}", longest));
@@ -154,16 +154,19 @@ PreintegratedTable::PreintegratedTable(const TransferFunction& transfer, float l
     range_ = transfer.back().scalar - first_;
     if (!std::isfinite(range_))
         throw sim::InputError("transfer function: expected scalars whose difference is a finite float");
+}
+
+void PreintegratedTable::integrate() const {
     const auto scalar = [&](std::uint32_t node) {
         return static_cast<double>(first_) + static_cast<double>(range_) * node / (scalars_ - 1);
     };
-    nodes_.resize(std::size_t{scalars} * scalars * lengths);
-    for (std::uint32_t s2 = 0; s2 < scalars; ++s2)
-        for (std::uint32_t s1 = 0; s1 < scalars; ++s1) {
-            const Gap gap(transfer, scalar(s1), scalar(s2));
-            for (std::uint32_t i = 0; i < lengths; ++i)
-                nodes_[(std::size_t{i} * scalars + s2) * scalars + s1] =
-                    gap.node(static_cast<double>(longest) * i / (lengths - 1));
+    nodes_.resize(std::size_t{scalars_} * scalars_ * lengths_);
+    for (std::uint32_t s2 = 0; s2 < scalars_; ++s2)
+        for (std::uint32_t s1 = 0; s1 < scalars_; ++s1) {
+            const Gap gap(transfer_, scalar(s1), scalar(s2));
+            for (std::uint32_t i = 0; i < lengths_; ++i)
+                nodes_[(std::size_t{i} * scalars_ + s2) * scalars_ + s1] =
+                    gap.node(static_cast<double>(longest_) * i / (lengths_ - 1));
         }
 }
 
@@ -182,6 +185,7 @@ glm::vec4 PreintegratedTable::lookup(float s1, float s2, float length) const {
 }
 
 glm::vec4 PreintegratedTable::gap(float s1, float s2, float length) const {
+    std::call_once(integrated_, [this] { integrate(); });
     const glm::vec4 node = lookup(s1, s2, length);
     const float opacity = -std::expm1(-node.a * length);
     return {opacity * glm::vec3(node), opacity};

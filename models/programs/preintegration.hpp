@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <mutex>
 #include <vector>
 
 namespace models {
@@ -16,7 +17,7 @@ struct TransferPoint {
 /// Colour and extinction, linear between points of ascending scalars and constant outside them.
 using TransferFunction = std::vector<TransferPoint>;
 
-/// Table over (s1, s2, length).
+/// Table over (s1, s2, length), integrated when the first gap is asked for: programs are also made to be described.
 ///
 /// A node holds the mean extinction of the gap and the mean of its colour weighted by what reaches the eye; opacity is
 /// 1 - exp(-extinction * length) and the premultiplied colour is opacity * mean colour. Both of these are bounded and
@@ -31,11 +32,14 @@ class PreintegratedTable {
     glm::vec4 gap(float s1, float s2, float length) const;
 
   private:
+    void integrate() const;
     glm::vec4 lookup(float s1, float s2, float length) const;
 
+    TransferFunction transfer_;
     float first_, range_, longest_;
     std::uint32_t scalars_, lengths_;
-    std::vector<glm::vec4> nodes_; ///< mean colour, mean extinction; s1 fastest, then s2, then the length
+    mutable std::once_flag integrated_;
+    mutable std::vector<glm::vec4> nodes_; ///< mean colour, mean extinction; s1 fastest, then s2, then the length
 };
 
 } // namespace models

@@ -57,7 +57,7 @@ FragmentPipeline::FragmentPipeline(sim::Context context, std::uint16_t pipe, con
 
 void FragmentPipeline::begin_pass(std::uint32_t registers_per_fragment) {
     l1_.drop_kbuffer_lines();
-    draw_ = ~std::uint32_t{0};
+    call_ = ~std::uint32_t{0};
     ++passes_;
     thread_limit_ = std::clamp(params_.registers / std::max(registers_per_fragment, 1U), 1U, params_.quads_in_flight);
 }
@@ -106,11 +106,14 @@ void FragmentPipeline::start(const QuadTask& task) {
     thread = {};
     thread.task = task;
     const std::uint32_t draw = pass_->draw_of(task.quad);
-    if (site_ != nullptr && site_->coherence == TextureCoherence::invalidate_on_draw && draw != draw_ && draw_ != ~0U) {
-        l1_.drop_kbuffer_lines();
-        ++stats_.l1.invalidations;
+    if (site_ != nullptr && site_->coherence == TextureCoherence::invalidate_on_draw) {
+        const std::uint32_t call = pass_->call_of(pass_->stream->quads[task.quad].triangle);
+        if (call != call_ && call_ != ~0U) {
+            l1_.drop_kbuffer_lines();
+            ++stats_.l1.invalidations;
+        }
+        call_ = call;
     }
-    draw_ = draw;
     thread.task.mask = captured_samples(task);
     stats_.peel_rejects += static_cast<std::uint64_t>(std::popcount(task.mask) - std::popcount(thread.task.mask));
     std::uint32_t instructions = pass_->shader_costs[draw].alu;

@@ -179,7 +179,7 @@ class FragmentPipeline final : public sim::Component {
     std::optional<std::uint16_t> read_in_hand_; ///< looked up, request not sent yet
     sim::Cycle issue_free_ = 0;
     sim::Cycle texture_free_ = 0;
-    std::uint32_t draw_ = ~std::uint32_t{0};    ///< of the youngest quad, for invalidate_on_draw
+    std::uint32_t call_ = ~std::uint32_t{0};    ///< draw call of the youngest quad, for invalidate_on_draw
     std::uint64_t passes_ = 0;                  ///< begun so far
     std::uint32_t orphans_ = ~std::uint32_t{0}; ///< next generation of lines invalidated on their way
 };

@@ -34,7 +34,7 @@ void FragmentScheduler::begin_pass() {
     pixel_order_.assign(static_cast<std::size_t>(pass_->layout.width + 1) * (pass_->layout.rows() + 1), 0);
     if (plan_->tickets) area_order_.assign(pass_->layout.blocks(), 0);
     if (plan_->guard != nullptr) unfinished_.assign(pixel_order_.size(), 0);
-    batch_ = ~std::uint32_t{0};
+    batch_ = no_batch;
 }
 
 bool FragmentScheduler::take_commits() {
@@ -172,22 +172,24 @@ bool FragmentScheduler::wake_waiting() {
     return woken != 0;
 }
 
-bool FragmentScheduler::at_batch_boundary(const QuadTask& task) const {
-    if (!flush_.active() || pass_->end == FragmentEnd::depth_colour) return false;
-    const std::uint32_t triangle = pass_->stream->quads[task.quad].triangle;
-    const std::uint32_t batch =
-        flush_.every_triangles != 0 ? triangle / flush_.every_triangles : pass_->stream->triangles[triangle].draw;
-    return batch_ != ~std::uint32_t{0} && batch != batch_;
+std::uint32_t FragmentScheduler::batch_of(std::uint32_t triangle) const {
+    return flush_.every_triangles != 0 ? triangle / flush_.every_triangles : pass_->call_of(triangle);
 }
 
-// What the flushing quads take that lie between two batches. Batches and quads take turns among the draws (see
+bool FragmentScheduler::at_batch_boundary(const QuadTask& task) const {
+    if (!flush_.active() || pass_->end == FragmentEnd::depth_colour || batch_ == no_batch) return false;
+    const std::uint32_t triangle = pass_->stream->quads[task.quad].triangle;
+    return triangle != batch_triangle_ && batch_of(triangle) != batch_;
+}
+
+// What the flushing quads take that lie between two batches. Batches and quads take turns among the parts (see
 // traces/submission.hpp). Batches without a fragment are never seen here, but their quads cover the screen like all
 // others.
-sim::Cycle FragmentScheduler::cover_cycles(std::uint32_t from_draw, std::uint32_t to_draw) const {
+sim::Cycle FragmentScheduler::cover_cycles(std::uint32_t from, std::uint32_t to) const {
     const std::uint32_t rate = flush_.quad_pixels_per_clk;
     if (rate == 0) return 0;
     const std::uint64_t pixels = std::uint64_t{pass_->layout.width} * pass_->layout.height * pass_->layout.samples;
-    const std::uint32_t quads = flush_.every_draw ? std::max(1U, (to_draw - from_draw) / 2) : 1;
+    const std::uint32_t quads = flush_.every_draw ? std::max(1U, (to - from) / 2) : 1;
     return quads * ((pixels + rate - 1) / rate);
 }
 
@@ -241,9 +243,9 @@ sim::Activity FragmentScheduler::accept(bool progress) {
             acknowledged_ = 0;
             invalidates_sent_ = 0;
             writeback_sent_ = false;
-            cover_cycles_ = cover_cycles(batch_, pass_->stream->draw_of(input->quad));
+            cover_cycles_ = cover_cycles(batch_, batch_of(pass_->stream->quads[input->quad].triangle));
             ++stats_.flushes;
-            batch_ = ~std::uint32_t{0};
+            batch_ = no_batch;
         }
         if (flush_state_ != FlushState::none && !advance_flush(progress))
             return progress ? sim::Activity::busy : sim::Activity::memory;
@@ -269,9 +271,10 @@ sim::Activity FragmentScheduler::accept(bool progress) {
             if (guarded) count_unfinished(quad, task.pixels(), 1);
             dispatch(task, guarded);
         }
-        const std::uint32_t triangle = quad.triangle;
-        batch_ =
-            flush_.every_triangles != 0 ? triangle / flush_.every_triangles : pass_->stream->triangles[triangle].draw;
+        if (flush_.active() && (batch_ == no_batch || quad.triangle != batch_triangle_)) {
+            batch_triangle_ = quad.triangle;
+            batch_ = batch_of(quad.triangle);
+        }
         progress = true;
         overflowing_ = classified_ = false;
     }

@@ -90,8 +90,10 @@ class FragmentScheduler final : public sim::Component {
     bool overlaps_unfinished(const QuadTask& task) const;
     void count_unfinished(const Quad& quad, std::uint8_t pixels, std::int32_t by);
     void count_order(QuadTask& task);
+    /// Number of the batch between two flushes that a triangle belongs to; grows along the pass.
+    std::uint32_t batch_of(std::uint32_t triangle) const;
     bool at_batch_boundary(const QuadTask& task) const;
-    sim::Cycle cover_cycles(std::uint32_t from_draw, std::uint32_t to_draw) const;
+    sim::Cycle cover_cycles(std::uint32_t from, std::uint32_t to) const;
     bool advance_flush(bool& progress);
     bool touches_kbuffer(const QuadTask& task) const {
         return task.mask != 0 && pass_->end != FragmentEnd::depth_colour;
@@ -121,7 +123,9 @@ class FragmentScheduler final : public sim::Component {
     std::uint32_t in_flight_ = 0; ///< dispatched and not committed; with `tracked_` only
     FlushState flush_state_ = FlushState::none;
     std::uint32_t acknowledged_ = 0;
-    std::uint32_t batch_ = ~std::uint32_t{0};
+    static constexpr std::uint32_t no_batch = ~std::uint32_t{0};
+    std::uint32_t batch_ = no_batch;   ///< of the last quad taken, ...
+    std::uint32_t batch_triangle_ = 0; ///< ... and its triangle
     sim::Cycle flush_since_ = 0;
     sim::Cycle cover_cycles_ = 0; ///< of the flushing quads of this flush
     sim::Cycle covered_at_ = 0;   ///< they have been drawn

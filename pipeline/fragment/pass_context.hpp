@@ -60,6 +60,13 @@ struct PassContext {
         return (quad.y + std::size_t{pixel / 2}) * layout.width + quad.x + pixel % 2;
     }
     std::uint32_t draw_of(QuadId quad) const { return stream->draw_of(quad); }
+    /// Number of the draw call that a triangle belongs to; grows along the pass. Parts of a draw are calls of their
+    /// own.
+    std::uint32_t call_of(std::uint32_t triangle) const {
+        const Triangle& of = stream->triangles[triangle];
+        const bool parts = !stream->draws.empty() && stream->draws.front().is_part();
+        return parts ? stream->range_of(of.primitive) : of.draw;
+    }
 };
 
 } // namespace pipeline

@@ -40,7 +40,7 @@ class Coverage {
           output_(output),
           range_(stream.draws[piece.of]),
           instance_(plan.instances[piece.of]),
-          read_(plan.resources, *instance_.geometry) {
+          read_(plan.resources, *instance_.geometry, range_.first_triangle) {
         output_.triangles.reserve(piece.count);
         for (std::uint32_t i = 0; i < piece.count; ++i) cover(piece.first + i);
     }

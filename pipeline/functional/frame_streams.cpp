@@ -12,7 +12,10 @@ std::vector<FragmentStream> rasterize_frame(const Frame& frame, FrontEndOptions 
         options.colours = needs.colours;
         options.textures = needs.textures;
         options.both_faces = pass.both_faces;
-        streams.push_back(rasterize(*frame.resources, frame.draws, pass.draws, frame.view_of(pass), options));
+        streams.push_back(
+            pass.parts.empty()
+                ? rasterize(*frame.resources, frame.draws, pass.draws, frame.view_of(pass), options)
+                : rasterize_parts(*frame.resources, frame.draws, pass.parts, frame.view_of(pass), options));
     }
     return streams;
 }

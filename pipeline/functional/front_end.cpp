@@ -106,35 +106,96 @@ class VertexRuns {
     std::map<Key, std::uint32_t> last_; ///< run that was found last, or as many as there were
 };
 
-/// Lays out the instances, their primitives and their vertices.
-void make_plan(FrontEndPlan& plan, FragmentStream& stream, const std::vector<Draw>& draws,
-               std::span<const std::uint32_t> which) {
-    std::map<std::uint32_t, VertexRange> used;
-    VertexRuns runs(plan.runs);
-    std::uint64_t primitives = 0;
-    for (const std::uint32_t number : which) {
-        check_draw(plan.resources, draws, number);
-        const Draw& draw = draws[number];
-        const Geometry& geometry = plan.resources.geometries[draw.geometry];
-        const Material& material = plan.resources.materials[draw.material];
-        const std::uint32_t count = geometry.triangle_count();
-        auto known = used.find(draw.geometry);
-        if (known == used.end()) known = used.emplace(draw.geometry, used_vertices(plan.resources, geometry)).first;
-        for (std::size_t i = 0; i < draw.instances.size(); ++i) {
-            const glm::mat4& model = draw.instances[i];
-            plan.instances.push_back({&geometry, &material, &model, runs.run_of(geometry, model, known->second),
-                                      culling_of(plan.options.both_faces || material.double_sided, model)});
-            if (primitives + count > std::numeric_limits<std::uint32_t>::max())
-                throw sim::InputError(
-                    fmt::format("draw {} \"{}\": expected at most 2^32 - 1 primitives in a pass", number, draw.name));
-            stream.draws.push_back(
-                {number, static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(primitives), count, 0, 0});
-            primitives += count;
-        }
+/// Lays out the instances or parts, their primitives and their vertices.
+class Planner {
+  public:
+    Planner(FrontEndPlan& plan, FragmentStream& stream, const std::vector<Draw>& draws)
+        : plan_(plan), stream_(stream), draws_(draws), checked_(draws.size()), runs_(plan.runs) {}
+
+    void add_whole(std::uint32_t number) {
+        check(number);
+        const Draw& draw = draws_[number];
+        const Geometry& geometry = plan_.resources.geometries[draw.geometry];
+        auto known = used_.find(draw.geometry);
+        if (known == used_.end()) known = used_.emplace(draw.geometry, used_vertices(plan_.resources, geometry)).first;
+        for (std::uint32_t i = 0; i < draw.instances.size(); ++i)
+            add({.draw = number, .instance = i, .primitives = geometry.triangle_count()}, geometry, known->second);
     }
-    stream.draws.shrink_to_fit();
-    stream.primitives.resize(primitives);
-    plan.vertices.resize(runs.place());
+
+    void add_parts(std::span<const DrawPart> parts) {
+        for (const DrawPart& part : parts) {
+            check(part.draw);
+            const Geometry& list = plan_.resources.geometries.at(part.geometry);
+            VertexRange& used = used_.try_emplace(part.geometry, no_vertices).first->second;
+            const VertexRange own = used_vertices(plan_.resources, list, 3 * part.first_triangle, 3 * part.triangles);
+            if (own.end > own.first) used = {std::min(used.first, own.first), std::max(used.end, own.end)};
+        }
+        for (const DrawPart& part : parts)
+            add({.draw = part.draw,
+                 .instance = part.instance,
+                 .primitives = part.triangles,
+                 .geometry = part.geometry,
+                 .first_triangle = part.first_triangle},
+                plan_.resources.geometries[part.geometry], used_.at(part.geometry));
+    }
+
+    void finish() {
+        stream_.draws.shrink_to_fit();
+        stream_.primitives.resize(primitives_);
+        plan_.vertices.resize(runs_.place());
+    }
+
+  private:
+    static constexpr VertexRange no_vertices{std::numeric_limits<std::uint32_t>::max(), 0};
+
+    void check(std::uint32_t number) {
+        if (number < checked_.size() && checked_[number]) return;
+        check_draw(plan_.resources, draws_, number);
+        checked_[number] = true;
+    }
+
+    void add(DrawRange range, const Geometry& geometry, const VertexRange& used) {
+        const Draw& draw = draws_[range.draw];
+        const Material& material = plan_.resources.materials[draw.material];
+        const glm::mat4& model = draw.instances.at(range.instance);
+        const VertexRange some = used.end == 0 ? VertexRange{} : used;
+        plan_.instances.push_back({&geometry, &material, &model, runs_.run_of(geometry, model, some),
+                                   culling_of(plan_.options.both_faces || material.double_sided, model)});
+        if (primitives_ + range.primitives > std::numeric_limits<std::uint32_t>::max())
+            throw sim::InputError(
+                fmt::format("draw {} \"{}\": expected at most 2^32 - 1 primitives in a pass", range.draw, draw.name));
+        range.first_primitive = static_cast<std::uint32_t>(primitives_);
+        primitives_ += range.primitives;
+        stream_.draws.push_back(range);
+    }
+
+    FrontEndPlan& plan_;
+    FragmentStream& stream_;
+    const std::vector<Draw>& draws_;
+    std::vector<bool> checked_;
+    std::map<std::uint32_t, VertexRange> used_; ///< by geometry
+    VertexRuns runs_;
+    std::uint64_t primitives_ = 0;
+};
+
+template <class Add>
+FragmentStream rasterize_planned(const Resources& resources, const std::vector<Draw>& draws, const View& view,
+                                 const FrontEndOptions& options, const Add& add) {
+    check_view(view);
+    FragmentStream stream;
+    stream.width = view.width;
+    stream.height = view.height;
+    stream.samples = view.samples;
+    FrontEndPlan plan(resources, view, options);
+    {
+        Planner planner(plan, stream, draws);
+        add(planner);
+        planner.finish();
+    }
+    transform_pass(plan);
+    coverage_pass(plan, stream);
+    shading_pass(plan, stream);
+    return stream;
 }
 
 } // namespace
@@ -163,17 +224,14 @@ void FrontEndProgress::end_piece() {
 
 FragmentStream rasterize(const Resources& resources, const std::vector<Draw>& draws,
                          std::span<const std::uint32_t> which, const View& view, const FrontEndOptions& options) {
-    check_view(view);
-    FragmentStream stream;
-    stream.width = view.width;
-    stream.height = view.height;
-    stream.samples = view.samples;
-    FrontEndPlan plan(resources, view, options);
-    make_plan(plan, stream, draws, which);
-    transform_pass(plan);
-    coverage_pass(plan, stream);
-    shading_pass(plan, stream);
-    return stream;
+    return rasterize_planned(resources, draws, view, options, [which](Planner& planner) {
+        for (const std::uint32_t number : which) planner.add_whole(number);
+    });
+}
+
+FragmentStream rasterize_parts(const Resources& resources, const std::vector<Draw>& draws,
+                               std::span<const DrawPart> parts, const View& view, const FrontEndOptions& options) {
+    return rasterize_planned(resources, draws, view, options, [parts](Planner& planner) { planner.add_parts(parts); });
 }
 
 } // namespace pipeline

@@ -34,4 +34,9 @@ struct FrontEndOptions {
 FragmentStream rasterize(const Resources& resources, const std::vector<Draw>& draws,
                          std::span<const std::uint32_t> which, const View& view, const FrontEndOptions& options = {});
 
+/// The same of parts of draws. The lists that they are runs of must be in range, and their indices those of vertices of
+/// the draws they belong to.
+FragmentStream rasterize_parts(const Resources& resources, const std::vector<Draw>& draws,
+                               std::span<const DrawPart> parts, const View& view, const FrontEndOptions& options = {});
+
 } // namespace pipeline

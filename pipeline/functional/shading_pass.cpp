@@ -66,13 +66,11 @@ class Shading {
 
   private:
     void enter_instance(std::uint32_t primitive) {
-        const auto after =
-            std::upper_bound(stream_.draws.begin(), stream_.draws.end(), primitive,
-                             [](std::uint32_t p, const DrawRange& range) { return p < range.first_primitive; });
-        range_ = &*(after - 1);
-        instance_ = &plan_.instances[static_cast<std::size_t>(range_ - stream_.draws.data())];
+        const std::uint32_t range = stream_.range_of(primitive);
+        range_ = &stream_.draws[range];
+        instance_ = &plan_.instances[range];
         shader_.emplace(make_shader(plan_, *instance_));
-        reader_.emplace(plan_.resources, *instance_->geometry);
+        reader_.emplace(plan_.resources, *instance_->geometry, range_->first_triangle);
     }
 
     void enter_triangle(std::uint32_t number) {

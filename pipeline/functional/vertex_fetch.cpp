@@ -94,11 +94,16 @@ std::vector<IndexRun> index_runs(const Resources& resources, const Geometry& geo
 }
 
 VertexRange used_vertices(const Resources& resources, const Geometry& geometry) {
-    if (geometry.index_type == IndexType::none) return {0, geometry.index_count};
-    const IndexReader index(resources, geometry);
+    return used_vertices(resources, geometry, 0, geometry.index_count);
+}
+
+VertexRange used_vertices(const Resources& resources, const Geometry& geometry, std::uint32_t first,
+                          std::uint32_t count) {
+    if (geometry.index_type == IndexType::none) return {first, first + count};
+    const IndexReader index(resources, geometry, first);
     const std::uint32_t restart = restart_index(geometry.index_type);
     VertexRange used{std::numeric_limits<std::uint32_t>::max(), 0};
-    for (std::uint32_t i = 0; i < geometry.index_count; ++i) {
+    for (std::uint32_t i = 0; i < count; ++i) {
         const std::uint32_t value = index(i);
         if (geometry.primitive_restart && value == restart) continue;
         used.first = std::min(used.first, value);

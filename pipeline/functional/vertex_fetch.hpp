@@ -58,13 +58,16 @@ class AttributeReader {
     bool normalized_;
 };
 
-/// Reads the i-th vertex number of a geometry; the number is i where there is no index buffer.
+/// Reads the i-th vertex number of a geometry, from the `first`-th on; the number is first + i where there is no index
+/// buffer.
 class IndexReader {
   public:
-    IndexReader(const Resources& resources, const Geometry& geometry)
+    IndexReader(const Resources& resources, const Geometry& geometry, std::uint32_t first = 0)
         : first_(geometry.index_type == IndexType::none
                      ? nullptr
-                     : resources.buffers[geometry.index_buffer].bytes.data() + geometry.index_offset),
+                     : resources.buffers[geometry.index_buffer].bytes.data() + geometry.index_offset +
+                           std::uint64_t{first} * bytes_of(geometry.index_type)),
+          without_buffer_(first),
           type_(geometry.index_type) {}
 
     std::uint32_t operator()(std::uint32_t i) const {
@@ -78,7 +81,7 @@ class IndexReader {
         case IndexType::none:
             break;
         }
-        return i;
+        return without_buffer_ + i;
     }
 
   private:
@@ -90,14 +93,16 @@ class IndexReader {
     }
 
     const std::byte* first_;
+    std::uint32_t without_buffer_;
     IndexType type_;
 };
 
-/// Assembles the primitives of a geometry in its topology, which must outlive the reader.
+/// Assembles the primitives of a geometry in its topology, which must outlive the reader; of a list of triangles from
+/// `first_triangle` on.
 class PrimitiveReader {
   public:
-    PrimitiveReader(const Resources& resources, const Geometry& geometry)
-        : index_(resources, geometry), topology_(geometry.topology), runs_(geometry.runs) {}
+    PrimitiveReader(const Resources& resources, const Geometry& geometry, std::uint32_t first_triangle = 0)
+        : index_(resources, geometry, 3 * first_triangle), topology_(geometry.topology), runs_(geometry.runs) {}
 
     /// The run of indices that a triangle is made of; all of them where primitive restart is off.
     IndexRun run_of(std::uint32_t primitive) const {
@@ -133,6 +138,11 @@ class PrimitiveReader {
     std::span<const IndexRun> runs_;
 };
 
+/// A triangle of fewer than three vertices, as stitches of strips are: it has no area from wherever it is seen.
+constexpr bool names_a_vertex_twice(const std::array<std::uint32_t, 3>& corners) {
+    return corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0];
+}
+
 /// What Geometry::runs has to hold where primitive restart is on; the index buffer has to be in range.
 std::vector<IndexRun> index_runs(const Resources& resources, const Geometry& geometry);
 
@@ -142,5 +152,8 @@ struct VertexRange {
     std::uint32_t end = 0;
 };
 VertexRange used_vertices(const Resources& resources, const Geometry& geometry);
+/// The same of `count` indices from the `first`-th on.
+VertexRange used_vertices(const Resources& resources, const Geometry& geometry, std::uint32_t first,
+                          std::uint32_t count);
 
 } // namespace pipeline

@@ -23,7 +23,7 @@ bool CommandProcessor::begins_call() const {
     if (next_ == 0) return true;
     const DrawRange& range = pass_->range(next_);
     const DrawRange& before = pass_->range(next_ - 1);
-    return range.draw != before.draw || range.instance <= before.instance;
+    return range.is_part() || range.draw != before.draw || range.instance <= before.instance;
 }
 
 bool CommandProcessor::take() {

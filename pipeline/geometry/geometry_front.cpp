@@ -43,6 +43,7 @@ Stats at_or_empty(const std::vector<Stats>& values, std::uint32_t index) {
 GeometryFront::GeometryFront(sim::Simulation& simulation, const sim::Clock& clock, const GeometryParams& params,
                              const Frame& frame, const Needs& needs, const HostParams& host)
     : frame_(&frame),
+      host_(host),
       terms_(draw_terms(host, frame)),
       command_processor_(simulation.context("geometry.command_processor", clock), params.command_processor, pass_,
                          host.frame_us),
@@ -110,7 +111,8 @@ void GeometryFront::start(const FragmentStream& stream, std::span<const Draw> dr
 void GeometryFront::start(const FragmentStream& stream, std::span<const Draw> draws,
                           std::span<const DrawRange> ranges) {
     CHECK(draws.size() == terms_.size()); // ranges count the draws of the frame
-    pass_ = {pass_.number + 1, &stream, frame_->resources.get(), draws, ranges, terms_};
+    range_terms_ = range_terms(host_, *frame_, ranges);
+    pass_ = {pass_.number + 1, &stream, frame_->resources.get(), draws, ranges, terms_, range_terms_};
     command_processor_.start();
 }
 
@@ -134,6 +136,7 @@ GeometryDrawStats GeometryFront::draw_stats(std::uint32_t draw) const {
             .vertices_referenced = {reuse.hits + reuse.misses},
             .vertex_shader_runs = reuse.misses,
             .culled = {clip.culled()},
+            .degenerate = clip.culled_degenerate,
             .clipped = clip.clipped,
             .triangles = clip.triangles,
             .index_bytes = {index_bytes},

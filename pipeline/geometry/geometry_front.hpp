@@ -78,13 +78,14 @@ static_assert(sim::fully_described<GeometryStats>);
 
 /// What one draw, all instances and passes together, cost the front.
 struct GeometryDrawStats {
-    sim::Counter primitives, vertices_referenced, vertex_shader_runs, culled, clipped, triangles, index_bytes,
-        vertex_bytes;
+    sim::Counter primitives, vertices_referenced, vertex_shader_runs, culled, degenerate, clipped, triangles,
+        index_bytes, vertex_bytes;
 
-    /// Shader runs per primitive; 0 without primitives.
+    /// Shader runs per primitive that is not degenerate; 0 without any. As of meshes (traces::MeshMeasure): stitches
+    /// between strips are no triangles.
     double acmr() const {
-        return primitives == 0 ? 0.0
-                               : static_cast<double>(vertex_shader_runs.value) / static_cast<double>(primitives.value);
+        const std::uint64_t whole = primitives.value - degenerate.value;
+        return whole == 0 ? 0.0 : static_cast<double>(vertex_shader_runs.value) / static_cast<double>(whole);
     }
 
     static constexpr auto fields() {
@@ -92,8 +93,10 @@ struct GeometryDrawStats {
         return std::tuple{
             sim::field<&S::primitives>("Primitives").unit("primitives"),
             sim::field<&S::vertices_referenced>("Corners of primitives").unit("vertices"),
-            sim::field<&S::vertex_shader_runs>("Vertices shaded; over primitives: the ACMR").unit("vertices"),
+            sim::field<&S::vertex_shader_runs>("Vertices shaded; over primitives that are not degenerate: the ACMR")
+                .unit("vertices"),
             sim::field<&S::culled>("Primitives that were culled").unit("primitives"),
+            sim::field<&S::degenerate>("Of these, primitives without area").unit("primitives"),
             sim::field<&S::clipped>("Primitives that were clipped").unit("primitives"),
             sim::field<&S::triangles>("Triangles to be rasterized").unit("triangles"),
             sim::field<&S::index_bytes>("Bytes of index buffer requested").unit("bytes"),
@@ -135,7 +138,9 @@ class GeometryFront {
     void link_vertex_path(const GeometryParams& params);
 
     const Frame* frame_;
-    std::vector<DrawTerms> terms_; ///< of frame_->draws
+    HostParams host_;
+    std::vector<DrawTerms> terms_;       ///< of frame_->draws
+    std::vector<DrawTerms> range_terms_; ///< of the ranges of the pass, where those do not do
     GeometryPass pass_;
     CommandProcessor command_processor_;
     std::unique_ptr<IndexFetch> index_fetch_;

@@ -83,12 +83,20 @@ void apply_cliff(DrawTerms& terms, const HostParams& params, const Geometry& geo
     if (terms.over_limit) terms.slowdown *= params.overflow_slowdown;
 }
 
-std::set<std::uint32_t> buffers_of(const Frame& frame, std::uint32_t draw) {
-    const Geometry& geometry = frame.resources->geometries[frame.draws[draw].geometry];
+std::set<std::uint32_t> buffers_of(const Frame& frame, std::uint32_t number) {
+    const Geometry& geometry = frame.resources->geometries[number];
     std::set<std::uint32_t> buffers;
     for (const VertexAttribute& attribute : geometry.attributes) buffers.insert(attribute.buffer);
     if (geometry.index_type != IndexType::none) buffers.insert(geometry.index_buffer);
     return buffers;
+}
+
+std::set<std::uint32_t> geometries_of(const Frame& frame, const Pass& pass) {
+    std::set<std::uint32_t> geometries;
+    for (const DrawPart& part : pass.parts) geometries.insert(part.geometry);
+    if (pass.parts.empty())
+        for (const std::uint32_t draw : pass.draws) geometries.insert(frame.draws[draw].geometry);
+    return geometries;
 }
 
 // Of buffers, whole: what is not read of them takes its place all the same.
@@ -103,21 +111,51 @@ bool fits(const HostParams& params, const Frame& frame) {
     if (params.vram_mb <= 0 || frame.submission != Submission::buffers) return true;
     std::set<std::uint32_t> used;
     for (const Pass& pass : frame.passes)
-        for (const std::uint32_t draw : pass.draws) used.merge(buffers_of(frame, draw));
+        for (const std::uint32_t geometry : geometries_of(frame, pass)) used.merge(buffers_of(frame, geometry));
     return total_bytes(frame, used) <= params.vram_mb * bytes_per_mb;
 }
 
+/// Buffers that the draws of a pass have brought into video memory so far.
+class BuffersOfPass {
+  public:
+    /// Bytes that have to come before a draw of this geometry.
+    double bring(const Frame& frame, std::uint32_t geometry) {
+        std::set<std::uint32_t> missing = buffers_of(frame, geometry);
+        std::erase_if(missing, [this](std::uint32_t buffer) { return present_.contains(buffer); });
+        const double bytes = total_bytes(frame, missing);
+        present_.merge(missing);
+        return bytes;
+    }
+
+  private:
+    std::set<std::uint32_t> present_;
+};
+
 void copy_buffers(std::vector<DrawTerms>& terms, const Frame& frame) {
     for (const Pass& pass : frame.passes) {
-        std::set<std::uint32_t> present;
-        for (const std::uint32_t draw : pass.draws) {
-            std::set<std::uint32_t> missing = buffers_of(frame, draw);
-            std::erase_if(missing, [&present](std::uint32_t buffer) { return present.contains(buffer); });
-            terms[draw].copied_bytes = total_bytes(frame, missing);
-            present.merge(missing);
-        }
+        if (!pass.parts.empty()) continue; // see range_terms
+        BuffersOfPass buffers;
+        for (const std::uint32_t draw : pass.draws)
+            terms[draw].copied_bytes = buffers.bring(frame, frame.draws[draw].geometry);
     }
 }
+
+DrawTerms terms_of(const HostParams& params, const Frame& frame, const Geometry& geometry, const Material& material,
+                   std::uint32_t span) {
+    DrawTerms terms;
+    terms.cpu_us = conversion_us(params, frame, geometry, material);
+    if (!needs_span(params, frame)) return terms;
+    terms.span = span;
+    const double bytes = vertex_bytes(frame, geometry, material);
+    terms.feed_us = feed_us(params, frame.submission, geometry, terms.span, bytes);
+    if (frame.submission == Submission::buffers) {
+        terms.slowdown = span_factor(params, terms.span);
+        apply_cliff(terms, params, geometry, bytes);
+    }
+    return terms;
+}
+
+std::uint32_t span_of(const VertexRange& range) { return range.end - range.first; }
 
 } // namespace
 
@@ -163,30 +201,38 @@ const SlotConversion& ConversionParams::of(Slot slot) const {
 std::vector<DrawTerms> draw_terms(const HostParams& params, const Frame& frame) {
     std::vector<DrawTerms> list;
     list.reserve(frame.draws.size());
-    const bool buffers = frame.submission == Submission::buffers;
     std::map<std::uint32_t, std::uint32_t> spans; // by geometry: draws share them
     for (const Draw& draw : frame.draws) {
         const Geometry& geometry = frame.resources->geometries[draw.geometry];
-        const Material& material = frame.resources->materials[draw.material];
-        DrawTerms terms;
-        terms.cpu_us = conversion_us(params, frame, geometry, material);
+        std::uint32_t span = 0;
         if (needs_span(params, frame)) {
             const auto [known, unseen] = spans.try_emplace(draw.geometry, 0);
-            if (unseen) {
-                const VertexRange range = used_vertices(*frame.resources, geometry);
-                known->second = range.end - range.first;
-            }
-            terms.span = known->second;
-            const double bytes = vertex_bytes(frame, geometry, material);
-            terms.feed_us = feed_us(params, frame.submission, geometry, terms.span, bytes);
-            if (buffers) {
-                terms.slowdown = span_factor(params, terms.span);
-                apply_cliff(terms, params, geometry, bytes);
-            }
+            if (unseen) known->second = span_of(used_vertices(*frame.resources, geometry));
+            span = known->second;
         }
-        list.push_back(terms);
+        list.push_back(terms_of(params, frame, geometry, frame.resources->materials[draw.material], span));
     }
     if (!fits(params, frame)) copy_buffers(list, frame);
+    return list;
+}
+
+std::vector<DrawTerms> range_terms(const HostParams& params, const Frame& frame, std::span<const DrawRange> ranges) {
+    const bool all_fit = fits(params, frame), spans = needs_span(params, frame);
+    const bool parts = !ranges.empty() && ranges.front().is_part();
+    std::vector<DrawTerms> list;
+    if (!parts || (all_fit && !spans)) return list;
+    list.reserve(ranges.size());
+    BuffersOfPass buffers;
+    for (const DrawRange& range : ranges) {
+        Geometry part = frame.resources->geometries[range.geometry];
+        const VertexRange used =
+            spans ? used_vertices(*frame.resources, part, 3 * range.first_triangle, 3 * range.primitives)
+                  : VertexRange{};
+        part.index_count = 3 * range.primitives;
+        const Material& material = frame.resources->materials[frame.draws[range.draw].material];
+        list.push_back(terms_of(params, frame, part, material, span_of(used)));
+        if (!all_fit) list.back().copied_bytes = buffers.bring(frame, range.geometry);
+    }
     return list;
 }
 

@@ -13,11 +13,13 @@
 #pragma once
 
 #include "pipeline/draw.hpp"
+#include "pipeline/fragment_stream.hpp"
 #include "pipeline/frame.hpp"
 #include "sim/described.hpp"
 
 #include <algorithm>
 #include <cstdint>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -144,6 +146,8 @@ struct DrawTerms {
 
 /// Terms of every draw of the frame, by draw. Draws that share a geometry and a material's needs cost the same.
 std::vector<DrawTerms> draw_terms(const HostParams& params, const Frame& frame);
+/// Of every range of a pass that consists of parts of draws; empty where those of their draws do.
+std::vector<DrawTerms> range_terms(const HostParams& params, const Frame& frame, std::span<const DrawRange> ranges);
 
 /// Seconds in which `bytes` cross the bus.
 inline double bus_seconds(const HostParams& params, double bytes) { return bytes / (params.bus_gbps * 1e9); }

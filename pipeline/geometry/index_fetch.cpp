@@ -33,7 +33,7 @@ IndexFetch::Work IndexFetch::work_of(std::uint32_t range_number) {
     const DrawRange& range = pass_->range(range_number);
     const Geometry& geometry = pass_->geometry(range_number);
     CHECK(range.primitives <= geometry.triangle_count());
-    Work work{.reader = PrimitiveReader(*pass_->resources, geometry),
+    Work work{.reader = PrimitiveReader(*pass_->resources, geometry, range.first_triangle),
               .topology = geometry.topology,
               .first_primitive = range.first_primitive,
               .range = range_number,
@@ -47,7 +47,8 @@ IndexFetch::Work IndexFetch::work_of(std::uint32_t range_number) {
     else if (work.primitives > 0)
         work.end_index = work.indices_needed(work.primitives - 1);
     if (work.end_index == 0) return work;
-    const std::uint64_t first = pass_->resources->buffers[geometry.index_buffer].address + geometry.index_offset;
+    const std::uint64_t first = pass_->resources->buffers[geometry.index_buffer].address + geometry.index_offset +
+                                std::uint64_t{3} * range.first_triangle * work.index_bytes;
     const std::uint64_t bytes = std::uint64_t{work.index_bytes} * work.end_index;
     work.address = first / params_.line * params_.line;
     work.skip = static_cast<std::uint32_t>(first % params_.line);
@@ -193,7 +194,7 @@ sim::Activity PrimitiveCounter::tick() {
             next_ = 0;
         } else {
             if (!primitives_out.ready()) return progress ? sim::Activity::busy : sim::Activity::blocked;
-            const PrimitiveReader reader(*pass_->resources, pass_->geometry(command->range));
+            const PrimitiveReader reader(*pass_->resources, pass_->geometry(command->range), range.first_triangle);
             primitives_out.send({range.first_primitive + next_, command->range, reader(next_), 0});
             ++stats_.primitives;
             ++next_;

@@ -33,7 +33,7 @@ void VertexFetch::begin_range(std::uint32_t range) {
     const double core_mhz = 1e6 / static_cast<double>(clock().period);
     cost_ = input_cost(input_cost_parts(params_.port, host_, pass_->term(range), layout, params_.cache.line, core_mhz));
     const std::uint32_t draw = pass_->range(range).draw;
-    const bool next_instance = draw == draw_ && pass_->number == pass_number_;
+    const bool next_instance = !pass_->range(range).is_part() && draw == draw_ && pass_->number == pass_number_;
     draw_cost_ = next_instance ? 0 : cost_.draw;
     pass_number_ = pass_->number;
     range_ = range;

@@ -21,7 +21,7 @@ struct VertexReuseStats {
         return std::tuple{
             sim::field<&S::primitives>("Primitives looked up").unit("primitives"),
             sim::field<&S::hits>("Corners whose vertex had been shaded; hits + misses = 3 primitives").unit("vertices"),
-            sim::field<&S::misses>("Vertices sent to be shaded; over primitives: the ACMR").unit("vertices")};
+            sim::field<&S::misses>("Vertices sent to be shaded").unit("vertices")};
     }
 };
 static_assert(sim::fully_described<VertexReuseStats>);

@@ -2,8 +2,10 @@
 
 #include "reports/accuracy/averaged_shadows.hpp"
 #include "reports/accuracy/error_picture.hpp"
+#include "reports/remarks.hpp"
 #include "sim/check.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -120,6 +122,17 @@ bool beats(double time, double error, double other_time, double other_error) {
 } // namespace
 
 std::string AccuracyPoint::name() const { return knobs.empty() ? "as set" : fmt::format("{}", fmt::join(knobs, " ")); }
+
+std::vector<std::string> remarks(const Accuracy& accuracy) {
+    std::vector<std::string> list;
+    if (std::all_of(accuracy.points.begin(), accuracy.points.end(),
+                    [](const AccuracyPoint& point) { return point.error.compared == 0; }))
+        list.emplace_back("nothing was compared, so these errors say nothing: no pixel shows a surface away from "
+                          "silhouettes");
+    list.insert(list.end(), accuracy.scene.notes.begin(), accuracy.scene.notes.end());
+    list.insert(list.end(), accuracy.notes.begin(), accuracy.notes.end());
+    return each_once(list);
+}
 
 void mark_pareto(std::vector<AccuracyPoint>& points) {
     for (AccuracyPoint& point : points) {

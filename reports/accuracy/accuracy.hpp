@@ -55,6 +55,9 @@ struct Accuracy {
 /// Throws sim::InputError with one line for anything the user got wrong.
 Accuracy measure_accuracy(const AccuracyRequest& request, const Supervision& supervision = {});
 
+/// What has to be said behind the table: where nothing was compared, that; then the notes.
+std::vector<std::string> remarks(const Accuracy& accuracy);
+
 /// Marks the points that no other one beats in both.
 void mark_pareto(std::vector<AccuracyPoint>& points);
 

@@ -72,10 +72,10 @@ std::string how_measured(const Accuracy& accuracy) {
     std::string text =
         fmt::format("{}: {} x {}, {}, design {} on {}, beside {}", accuracy.scene.name, accuracy.width, accuracy.height,
                     accuracy.workload, accuracy.design, accuracy.gpu,
-                    accuracy.rays > 0 ? fmt::format("{} rays to the light from each point", accuracy.rays)
+                    accuracy.rays > 0 ? fmt::format("{} to the light from each point", counted(accuracy.rays, "ray"))
                                       : std::string("all fragments of each pixel's ray"));
     if (!accuracy.settings.empty()) text += fmt::format("; {}", fmt::join(accuracy.settings, ", "));
-    return text + fmt::format(". {} pixels compared, {} at silhouettes left out.", with_commas(first.compared),
+    return text + fmt::format(". {} compared, {} at silhouettes left out.", counted(first.compared, "pixel"),
                               with_commas(first.excluded));
 }
 
@@ -147,7 +147,7 @@ std::string accuracy_text(const Accuracy& accuracy, TerminalStyle style) {
         rows.push_back({point.name()});
         for (const Column& column : shown) rows.back().push_back(column.cell(point));
     }
-    return wrap(how_measured(accuracy), style.columns, 2) + "\n" + text_table(columns, rows, style.colour);
+    return wrap(how_measured(accuracy), style.columns, 2) + "\n" + text_table(columns, rows, style);
 }
 
 Table accuracy_table(const Accuracy& accuracy) {

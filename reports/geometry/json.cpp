@@ -23,7 +23,9 @@ ordered_json case_json(const GeometryCase& one) {
         steps.push_back(std::move(json));
     }
     ordered_json draws = ordered_json::array();
-    for (std::size_t i = 0; i < one.result.draws.size(); ++i) {
+    constexpr std::size_t most_draws_listed = 64; // draws.csv has each
+    const bool listed = one.result.draws.size() <= most_draws_listed;
+    for (std::size_t i = 0; listed && i < one.result.draws.size(); ++i) {
         const pipeline::VertexPathDraw& draw = one.result.draws[i];
         ordered_json json = {{"draw", i}, {"acmr", draw.counts.acmr()}, {"counters", sim::to_json(draw.counts)}};
         json["index_range"] = draw.terms.span;
@@ -41,6 +43,7 @@ ordered_json case_json(const GeometryCase& one) {
             {"mesh", sim::to_json(one.measure)},
             {"steps", std::move(steps)},
             {"draws", std::move(draws)},
+            {"draws_not_listed", listed ? 0 : one.result.draws.size()},
             {"stages", one.result.stages.is_null() ? ordered_json::object() : one.result.stages}};
 }
 

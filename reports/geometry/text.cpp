@@ -22,7 +22,7 @@ std::string rate_text(double number) {
 
 std::string percent_text(double share) { return fmt::format("{:.1f}%", 100 * share); }
 
-std::string cases_text(const GeometryAdvice& advice, bool colour) {
+std::string cases_text(const GeometryAdvice& advice, TerminalStyle style) {
     std::vector<std::vector<std::string>> rows;
     for (const GeometryCase& one : advice.cases) {
         const traces::MeshMeasure& mesh = one.measure;
@@ -46,11 +46,11 @@ std::string cases_text(const GeometryAdvice& advice, bool colour) {
                        {"frames", "/s"},
                        {"speed", "x"},
                        {"limit", "", true}},
-                      rows, colour);
+                      rows, style);
 }
 
 // What each part of the vertex path would take alone, the largest first.
-std::string demand_text(const GeometryAdvice& advice, bool colour) {
+std::string demand_text(const GeometryAdvice& advice, TerminalStyle style) {
     struct Demand {
         std::string name;
         double cycles;
@@ -69,7 +69,7 @@ std::string demand_text(const GeometryAdvice& advice, bool colour) {
                         percent_text(demand.cycles / static_cast<double>(result.cycles))});
     return text_table(
         {{"as it is: what each part takes alone", "", true}, {"cycles", ""}, {"time", "ms"}, {"of frame", ""}}, rows,
-        colour);
+        style);
 }
 
 std::string steps_text(const GeometryAdvice& advice, TerminalStyle style) {
@@ -100,13 +100,12 @@ std::string published_text(const ValidationRow& row) {
 
 std::string advice_text(const GeometryAdvice& advice, TerminalStyle style) {
     std::string text =
-        wrap(fmt::format("{}: {} triangles; vertices from {}; GPU {}; {}", advice.scene, with_commas(advice.triangles),
+        wrap(fmt::format("{}: {}; vertices from {}; GPU {}; {}", advice.scene, counted(advice.triangles, "triangle"),
                          sim::enum_name(advice.submission), advice.gpu, sim::enum_name(advice.fidelity)),
              style.columns, 2);
     const double share = advice.cases.front().result.share_sampled;
     if (share < 1) text += fmt::format("Counts are taken from {} of the triangles.\n", percent_text(share));
-    text += "\n" + cases_text(advice, style.colour) + "\n" + demand_text(advice, style.colour) + "\n" +
-            steps_text(advice, style);
+    text += "\n" + cases_text(advice, style) + "\n" + demand_text(advice, style) + "\n" + steps_text(advice, style);
     if (!advice.left_out.empty()) text += "Left out:\n";
     for (const pipeline::LeftOut& item : advice.left_out)
         text += wrap(fmt::format("  {}: {}", item.unit, item.reason), style.columns, 4);
@@ -138,11 +137,11 @@ std::string validation_text(const GeometryValidation& validation, TerminalStyle 
                                    {"null", ""},
                                    {"ACMR", ""},
                                    {"limit", "", true}},
-                                  rows, style.colour);
+                                  rows, style);
     text += "\n" + wrap(std::string(error_reading), style.columns, 0) +
             wrap(std::string(status_reading), style.columns, 0) +
             wrap(fmt::format("Null model: {}", geometry_null_model), style.columns, 0) + "\n" +
-            error_summary_text(validation.summary, style.colour) + "\n" +
+            error_summary_text(validation.summary, style) + "\n" +
             wrap(error_sentences(validation.summary.back()), style.columns, 0);
     if (!explanations.empty()) text += "\nMisses above 25%:\n" + explanations;
     return text;
@@ -165,7 +164,7 @@ std::string leave_one_out_text(const std::vector<LeftOneOut>& entries, TerminalS
                                                                                            {"median", "|ln|"},
                                                                                            {"worst", "|ln|"},
                                                                                            {"worst row", "", true}},
-                                                                                          rows, style.colour);
+                                                                                          rows, style);
 }
 
 std::string calibration_text(const std::vector<GpuCalibration>& calibrations, TerminalStyle style) {
@@ -189,7 +188,7 @@ std::string calibration_text(const std::vector<GpuCalibration>& calibrations, Te
                        {"measured", "ms"},
                        {"model", "ms"},
                        {"why this row", "", true}},
-                      rows, style.colour);
+                      rows, style);
 }
 
 } // namespace reports

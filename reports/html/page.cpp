@@ -3,6 +3,7 @@
 #include "reports/html/markup.hpp"
 #include "reports/html/sections.hpp"
 #include "reports/numbers.hpp"
+#include "reports/remarks.hpp"
 #include "reports/result.hpp"
 #include "reports/run_numbers.hpp"
 #include "ropsim_chart_js.hpp"
@@ -26,19 +27,18 @@ std::string facts(const Comparison& comparison) {
     if (frame.program)
         method += fmt::format(", {} with k = {} ({} bytes per pixel)", escape_html(frame.program->id()),
                               frame.program->k(), frame.program->bytes_per_pixel());
-    const std::string notes = scene.notes.empty()
-                                  ? ""
-                                  : fmt::format("<p class=\"note\">Not drawn: {}.</p>\n",
-                                                escape_html(fmt::format("{}", fmt::join(scene.notes, "; "))));
-    return fmt::format(
-               "<p><b>{}</b> ({} triangles drawn, draws: {}, hash {}) at {} x {} pixels{}, camera {}. Method: {}. "
-               "GPU: <b>{}</b>. Seed {}.</p>\n<p class=\"note\">ropsim {} ({}); {} on {} threads, at most {} of "
-               "memory.</p>\n",
-               escape_html(scene.name), with_commas(scene.triangles_drawn), with_commas(scene.draws),
-               escape_html(scene.hash), comparison.width(), comparison.height(), samples_text(comparison),
-               escape_html(scene.camera), method, escape_html(comparison.gpu.name), comparison.seed, version_text(),
-               escape_html(build_text()), duration_text(comparison.host.seconds), comparison.host.threads,
-               bytes_text(static_cast<double>(comparison.host.peak_bytes))) +
+    std::string notes;
+    for (const std::string& note : remarks(comparison)) notes += fmt::format("<li>{}</li>", escape_html(note));
+    if (!notes.empty()) notes = "<p class=\"note\">Notes:</p><ul class=\"note\">" + notes + "</ul>\n";
+    return fmt::format("<p><b>{}</b> ({} drawn, draws: {}, hash {}) at {} x {} pixels{}, camera {}. Method: {}. "
+                       "GPU: <b>{}</b>. Seed {}.</p>\n<p class=\"note\">ropsim {} ({}); {} on {}, at most {} of "
+                       "memory.</p>\n",
+                       escape_html(scene.name), counted(scene.triangles_drawn, "triangle"), with_commas(scene.draws),
+                       escape_html(scene.hash), comparison.width(), comparison.height(), samples_text(comparison),
+                       escape_html(scene.camera), method, escape_html(comparison.gpu.name), comparison.seed,
+                       version_text(), escape_html(build_text()), duration_text(comparison.host.seconds),
+                       counted(comparison.host.threads, "thread"),
+                       bytes_text(static_cast<double>(comparison.host.peak_bytes))) +
            notes;
 }
 

@@ -7,6 +7,7 @@
 #include "reports/left_out.hpp"
 #include "reports/numbers.hpp"
 #include "reports/run_numbers.hpp"
+#include "reports/wrong_text.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -41,7 +42,14 @@ std::vector<HtmlCell> summary_row(const RunResult& run, const std::string& label
             error_number(run.lost_fragments),
             error_number(run.lost_updates),
             number(short_number(frames_per_second(run))),
-            number(short_number(cycles_per_second(run)))};
+            number(short_number(cycles_per_second(run))),
+            number(short_number(cycles_per_cpu_second(run)))};
+}
+
+std::string wrong_list(const Comparison& comparison) {
+    std::string html;
+    for (const std::string& line : wrong_lines(comparison)) html += fmt::format("<li>{}</li>", escape_html(line));
+    return html.empty() ? "" : "<ul class=\"note\">" + html + "</ul>\n";
 }
 
 std::string figure(const PictureFile& picture, bool magnified) {
@@ -75,8 +83,9 @@ std::string summary_section(const Comparison& comparison) {
     return html_table({"design", "core cycles", "time [ms]", "relative speed", "hazards by concurrency",
                        "hazards by incoherence", "wrong pixels", "on chip [KiB]", "DRAM bytes per fragment",
                        "fragments", "hazards", "hazards per million", "lost fragments", "lost updates", "frames/s",
-                       "host cycles/s"},
+                       "host cycles/s", "CPU cycles/s"},
                       rows) +
+           wrong_list(comparison) +
            fmt::format("<p class=\"note\">Speed is relative to {}. Wrong pixels differ in any bit from the frame "
                        "computed in submission order; lost fragments are entries of that frame which no layer holds; "
                        "a lost update was overwritten by a stale value. On chip: tile caches, payloads that wait, and "
@@ -134,8 +143,8 @@ std::string area_section(const Comparison& comparison) {
                             {}});
     const std::string equal =
         comparison.equal_area
-            ? fmt::format("<p>Every design has {} bytes; its tile caches have what is left beside all else.</p>\n",
-                          with_commas(comparison.equal_area->bytes))
+            ? fmt::format("<p>Every design has {}; its tile caches have what is left beside all else.</p>\n",
+                          counted(comparison.equal_area->bytes, "byte"))
             : "";
     return equal + html_table({"design", "tile caches [B]", "payloads [B]", "added [B]", "total [B]",
                                "what is added [B]", "comparators", "ALU lanes"},

@@ -125,10 +125,10 @@ std::string peeling_text(const PeelingValidation& validation, TerminalStyle styl
                     {"status", "", true},
                     {"null", ""},
                     {"number it decides, or what was chosen with it in view", "", true}},
-                   rows, style.colour);
+                   rows, style);
     text += "\n" + wrap(std::string(status_reading), style.columns, 0) +
             wrap(fmt::format("Null model: {}", peeling_null_model), style.columns, 0) + "\n" +
-            error_summary_text({validation.summary}, style.colour) + "\n" +
+            error_summary_text({validation.summary}, style) + "\n" +
             wrap(error_sentences(validation.summary), style.columns, 0);
     if (!explanations.empty()) text += "\nMisses above 25%:\n" + explanations;
     return text;

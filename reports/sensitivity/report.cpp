@@ -231,10 +231,10 @@ void add_sensitivity_rows(Table& table, const Sensitivity& result, const std::st
 
 std::string sensitivity_text(const Sensitivity& result, TerminalStyle style) {
     std::string text = wrap(conditions(result), style.columns, 2) + "\n";
-    text += text_table(text_columns(base_header(), 1), base_rows(result), style.colour) + "\n";
-    text += text_table(text_columns(effect_header(), 3), effect_rows(result), style.colour) + "\n";
+    text += text_table(text_columns(base_header(), 1), base_rows(result), style) + "\n";
+    text += text_table(text_columns(effect_header(), 3), effect_rows(result), style) + "\n";
     if (result.conclusions.empty()) return text + "No two designs are correct in every run.\n";
-    text += text_table(text_columns(conclusion_header(), 2), conclusion_rows(result), style.colour);
+    text += text_table(text_columns(conclusion_header(), 2), conclusion_rows(result), style);
     return text + wrap(fmt::format("A conclusion survives if no run reverses it by more than {:.0f} %.",
                                    100 * order_tolerance),
                        style.columns, 2);

@@ -2,6 +2,7 @@
 
 #include "pipeline/functional/parallel.hpp"
 #include "reports/compared_designs.hpp"
+#include "reports/remarks.hpp"
 #include "reports/run_numbers.hpp"
 #include "reports/sensitivity/parameters.hpp"
 #include "sim/check.hpp"
@@ -143,6 +144,13 @@ std::vector<pipeline::RunResult> base_runs(const ComparisonInput& input, const S
 
 } // namespace
 
+std::vector<std::string> remarks(const Sensitivity& result) {
+    std::vector<std::string> list;
+    if (!result.nothing_drawn.empty()) list.push_back(result.nothing_drawn);
+    list.insert(list.end(), result.scene.notes.begin(), result.scene.notes.end());
+    return each_once(list);
+}
+
 double SensitivityParameter::largest_change(const std::vector<SensitivityRun>& base) const {
     double largest = 0;
     for (const SensitivityStep& step : steps)
@@ -175,6 +183,7 @@ Sensitivity measure_sensitivity(const SensitivityRequest& request, const Supervi
     const std::vector<pipeline::RunResult> base = base_runs(input, supervision);
     for (const pipeline::RunResult& run : base) result.base.push_back(numbers_of(run));
     rank(result.base);
+    result.nothing_drawn = nothing_drawn(base.front());
     ParameterChoice choice = choose_parameters(request, input, units_of(base));
     result.parameters = std::move(choice.chosen);
     result.skipped = std::move(choice.skipped);

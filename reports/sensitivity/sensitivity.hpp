@@ -74,6 +74,7 @@ struct Sensitivity {
     std::uint64_t seed = 1;
     std::vector<VariantFacts> designs;
     std::vector<SensitivityRun> base; ///< by design
+    std::string nothing_drawn;        ///< why no fragment was drawn; empty where any was
     std::vector<SensitivityParameter> parameters;
     std::vector<std::pair<std::string, std::string>> skipped; ///< parameters that were not asked for by name, and why
     std::vector<Conclusion> conclusions;                      ///< pairs of correct designs, in the order of the designs
@@ -82,6 +83,9 @@ struct Sensitivity {
 
 /// Throws sim::InputError as prepare() does, and for parameters that there are not. Equal for any number of threads.
 Sensitivity measure_sensitivity(const SensitivityRequest& request, const Supervision& supervision = {});
+
+/// What has to be said behind the table: where nothing was drawn, that; then the notes of the scene.
+std::vector<std::string> remarks(const Sensitivity& result);
 
 std::string sensitivity_text(const Sensitivity& result, TerminalStyle style);
 nlohmann::ordered_json sensitivity_json(const Sensitivity& result);

@@ -15,10 +15,12 @@ namespace reports {
 
 namespace {
 
-void add(TruthError& error, double difference) {
+void add(TruthError& error, std::size_t pixel, double difference) {
     ++error.compared;
     error.worst = std::max(error.worst, difference);
-    error.wrong += difference <= error.tolerance ? 0 : 1;
+    if (difference <= error.tolerance) return;
+    ++error.wrong;
+    error.wrong_at.push_back(static_cast<std::uint32_t>(pixel));
 }
 
 using Distance = std::optional<double>;
@@ -37,7 +39,7 @@ void compare_depths(const Truth& truth, TruthError& error, TruthDepth truth_dept
         if (truth.doubtful(pixel))
             ++error.doubtful;
         else
-            add(error, depth_difference(here, there));
+            add(error, pixel, depth_difference(here, there));
     }
 }
 
@@ -84,7 +86,7 @@ TruthError colour_error(const Truth& truth, const pipeline::Frame& frame, std::s
         for (std::size_t i = pixel * 4; i < pixel * 4 + 3; ++i)
             difference = std::max(difference,
                                   std::fabs(static_cast<double>(picture[i]) - static_cast<double>(truth.colours[i])));
-        add(error, difference);
+        add(error, pixel, difference);
     }
     return error;
 }

@@ -94,7 +94,7 @@ void write_images(const TruthRun& run, const fs::path& directory) {
 } // namespace
 
 std::string write_truth(const TruthRun& run, const fs::path& directory, bool images) {
-    make_directory(directory);
+    begin_report_folder(directory);
     write_file(directory / "truth.json", result_text(truth_json(run)));
     if (images) write_images(run, directory);
     return fmt::format("Written to {}: truth.json{}\n", directory.string(),

@@ -1,13 +1,17 @@
 #include "reports/truth/truth_run.hpp"
 
 #include "pipeline/functional/frame_streams.hpp"
+#include "reports/remarks.hpp"
 #include "reports/stopwatch.hpp"
+#include "reports/truth/silhouettes.hpp"
 #include "reports/truth/truth_cache.hpp"
 #include "sim/check.hpp"
 #include "traces/camera.hpp"
 #include "traces/workloads.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace reports {
 
@@ -60,8 +64,15 @@ void check(const Supervision& supervision, TruthRun& run) {
     options.progress = share_of(supervision);
     const auto streams = pipeline::rasterize_frame(*run.frame, options);
     enter(supervision, Progress::Phase::reference);
-    run.errors =
-        errors_of_reference(run.truth, *run.frame, pipeline::run_reference(*run.frame, streams, 1, run.threads));
+    const pipeline::ReferenceImage reference = pipeline::run_reference(*run.frame, streams, 1, run.threads);
+    run.errors = errors_of_reference(run.truth, *run.frame, reference);
+    std::set<std::uint32_t> wrong;
+    for (const TruthError& error : run.errors) wrong.insert(error.wrong_at.begin(), error.wrong_at.end());
+    if (wrong.empty()) return;
+    // Few pixels are wrong, so only these are asked whether anybody could know better.
+    const RayScene scene(run.frame->resources, run.frame->draws);
+    mark_uncertain(run.truth, *run.frame, scene, std::vector<std::uint32_t>(wrong.begin(), wrong.end()));
+    run.errors = errors_of_reference(run.truth, *run.frame, reference);
 }
 
 } // namespace
@@ -69,6 +80,27 @@ void check(const Supervision& supervision, TruthRun& run) {
 double TruthRun::rays_per_second() const {
     const auto rays = static_cast<double>(truth.counts.pixel_rays + truth.counts.light_rays);
     return tracing_seconds > 0.0 ? rays / tracing_seconds : 0.0;
+}
+
+bool TruthRun::holds() const {
+    const auto compared = [](const TruthError& error) { return error.compared != 0; };
+    return std::any_of(errors.begin(), errors.end(), compared) &&
+           std::all_of(errors.begin(), errors.end(),
+                       [](const TruthError& error) { return error.compared == 0 || error.holds(); });
+}
+
+std::vector<std::string> remarks(const TruthRun& run) {
+    std::vector<std::string> list;
+    const bool compared =
+        std::any_of(run.errors.begin(), run.errors.end(), [](const TruthError& error) { return error.compared != 0; });
+    if (run.truth.counts.pixels_seen == 0)
+        list.emplace_back("nothing is seen, so these numbers say nothing: no ray meets a surface that the workload "
+                          "draws");
+    if (!run.errors.empty() && !compared)
+        list.emplace_back("nothing was compared, so the check says no: there is no pixel that can be judged");
+    list.insert(list.end(), run.scene.notes.begin(), run.scene.notes.end());
+    list.insert(list.end(), run.notes.begin(), run.notes.end());
+    return each_once(list);
 }
 
 TruthRun run_truth(const TruthRequest& request, const Supervision& supervision) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "reports/comparison.hpp"
+#include "reports/text_table.hpp"
 #include "reports/truth/against_truth.hpp"
 #include "reports/truth/truth.hpp"
 
@@ -38,16 +39,21 @@ struct TruthRun {
     unsigned threads = 1;
 
     double rays_per_second() const; ///< 0 when cached
+    /// Something was compared, and every comparison holds.
+    bool holds() const;
 };
 
 /// Throws sim::InputError with one line for anything the user got wrong.
 TruthRun run_truth(const TruthRequest& request, const Supervision& supervision = {});
 
+/// What has to be said behind the tables: where nothing was seen or compared, that; then notes on scene and cache.
+std::vector<std::string> remarks(const TruthRun& run);
+
 /// Two runs differ below "host" only.
 nlohmann::ordered_json truth_json(const TruthRun& run);
 
 /// Tables for the terminal.
-std::string truth_text(const TruthRun& run, bool colour);
+std::string truth_text(const TruthRun& run, TerminalStyle style);
 
 /// Writes truth.json and, unless `images` is false, the pictures (see README.md) into `directory`; returns the line
 /// that says so.

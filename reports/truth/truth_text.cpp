@@ -32,7 +32,7 @@ ordered_json error_json(const TruthError& error) {
             {"wrong", error.wrong},
             {"worst", std::isfinite(error.worst) ? ordered_json(error.worst) : ordered_json(nullptr)},
             {"tolerance", error.tolerance},
-            {"holds", error.holds()}};
+            {"holds", error.compared == 0 ? ordered_json(nullptr) : ordered_json(error.holds())}};
 }
 
 double visibility_mean(const Truth& truth) {
@@ -41,14 +41,17 @@ double visibility_mean(const Truth& truth) {
     return truth.visibility.empty() ? 1.0 : sum / static_cast<double>(truth.visibility.size());
 }
 
-std::string errors_text(const TruthRun& run, bool colour) {
+std::string errors_text(const TruthRun& run, TerminalStyle style) {
     std::vector<std::vector<std::string>> rows;
     for (const TruthError& error : run.errors)
         rows.push_back({error.what, with_commas(error.compared), with_commas(error.doubtful),
                         with_commas(error.overflown), with_commas(error.wrong),
-                        fmt::format("{:.4f}", 100.0 * error.share_right()), fmt::format("{:.2g}", error.tolerance),
+                        error.compared == 0 ? "-" : fmt::format("{:.4f}", 100.0 * error.share_right()),
+                        fmt::format("{:.2g}", error.tolerance),
                         std::isfinite(error.worst) ? fmt::format("{:.2g}", error.worst) : "missing",
-                        error.holds() ? "yes" : "no"});
+                        error.compared == 0 ? "-"
+                        : error.holds()     ? "yes"
+                                            : "no"});
     return text_table({{"in submission order", "", true},
                        {"compared", "pixels"},
                        {"doubtful", "pixels"},
@@ -58,10 +61,10 @@ std::string errors_text(const TruthRun& run, bool colour) {
                        {"tolerance", ""},
                        {"worst", ""},
                        {"99.9 %", ""}},
-                      rows, colour);
+                      rows, style);
 }
 
-std::string pixels_text(const TruthRun& run, bool colour) {
+std::string pixels_text(const TruthRun& run, TerminalStyle style) {
     const TruthCounts& counts = run.truth.counts;
     const auto pixels = static_cast<double>(run.truth.pixels());
     return text_table(
@@ -88,7 +91,7 @@ std::string pixels_text(const TruthRun& run, bool colour) {
           run.cached ? "-" : fmt::format("{:.2f}", run.build_seconds),
           run.cached ? "-" : fmt::format("{:.2f}", run.tracing_seconds),
           run.cached ? "-" : fmt::format("{:.2f}", run.rays_per_second() / 1e6), run.cached ? "cache" : "rays"}},
-        colour);
+        style);
 }
 
 } // namespace
@@ -115,6 +118,7 @@ ordered_json truth_json(const TruthRun& run) {
     ordered_json errors = ordered_json::array();
     for (const TruthError& error : run.errors) errors.push_back(error_json(error));
     json["errors"] = std::move(errors);
+    if (!run.errors.empty()) json["holds"] = run.holds();
     json["host"] = {{"seconds", run.seconds},
                     {"build_seconds", run.build_seconds},
                     {"tracing_seconds", run.tracing_seconds},
@@ -125,12 +129,12 @@ ordered_json truth_json(const TruthRun& run) {
     return json;
 }
 
-std::string truth_text(const TruthRun& run, bool colour) {
-    std::string text = fmt::format("{}: {} triangles in {} draws, {} at {}x{}, camera {}\n\n", run.scene.name,
-                                   with_commas(run.scene.triangles_drawn), with_commas(run.scene.draws),
+std::string truth_text(const TruthRun& run, TerminalStyle style) {
+    std::string text = fmt::format("{}: {} in {}, {} at {}x{}, camera {}\n\n", run.scene.name,
+                                   counted(run.scene.triangles_drawn, "triangle"), counted(run.scene.draws, "draw"),
                                    run.frame->workload, run.truth.width, run.truth.height, run.scene.camera);
-    text += pixels_text(run, colour);
-    if (!run.errors.empty()) text += "\n" + errors_text(run, colour);
+    text += pixels_text(run, style);
+    if (!run.errors.empty()) text += "\n" + errors_text(run, style);
     return text;
 }
 

@@ -95,7 +95,7 @@ std::string error_sentences(const ErrorSummary& summary) {
     return text;
 }
 
-std::string error_summary_text(const std::vector<ErrorSummary>& summaries, bool colour) {
+std::string error_summary_text(const std::vector<ErrorSummary>& summaries, TerminalStyle style) {
     std::vector<std::vector<std::string>> rows;
     for (const SummaryLine& line : summary_lines(summaries)) rows.push_back(summary_cells(line));
     return text_table({{"GPU", "", true},
@@ -108,7 +108,7 @@ std::string error_summary_text(const std::vector<ErrorSummary>& summaries, bool 
                        {"null RMS", "ln"},
                        {"skill", ""},
                        {"worst row", "", true}},
-                      rows, colour);
+                      rows, style);
 }
 
 std::string error_summary_html(const std::vector<ErrorSummary>& summaries) {

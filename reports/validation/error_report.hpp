@@ -34,7 +34,7 @@ std::string row_status_text(const ValidationRow& row);
 std::string error_sentences(const ErrorSummary& summary);
 
 /// A row for each GPU and kind of rows: counts, errors, null model, skill.
-std::string error_summary_text(const std::vector<ErrorSummary>& summaries, bool colour);
+std::string error_summary_text(const std::vector<ErrorSummary>& summaries, TerminalStyle style);
 std::string error_summary_html(const std::vector<ErrorSummary>& summaries);
 /// summary.csv
 Table error_summary_table(const std::vector<ErrorSummary>& summaries);

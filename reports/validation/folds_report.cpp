@@ -1,5 +1,6 @@
 #include "reports/validation/folds_report.hpp"
 
+#include "reports/numbers.hpp"
 #include "reports/result.hpp"
 #include "reports/text_table.hpp"
 #include "reports/validation/error_report.hpp"
@@ -25,13 +26,15 @@ std::string undetermined_text(const HeldOutRow& held) {
 
 std::string folds_sentence(const GpuFolds& card) {
     const ErrorSpread& spread = card.held_out;
-    std::string text = fmt::format("{}: {} rows in {} folds (seed {}), fitted together to {:.3f} RMS. ", card.gpu,
-                                   card.rows.size(), card.folds.size(), card.seed, card.whole.rms);
+    std::string text = fmt::format("{}: {} in {} (seed {}), fitted together to {:.3f} RMS. ", card.gpu,
+                                   counted(card.rows.size(), "row"), sim::counted(card.folds.size(), "fold"), card.seed,
+                                   card.whole.rms);
     if (spread.rows == 0) {
         text += "No row left out is testable.";
     } else {
-        text += fmt::format("Left out, {} are testable: error {:.3f} in the median, {:.3f} RMS, {:.3f} at worst ({}).",
-                            spread.rows, spread.median, spread.rms, spread.worst, spread.worst_row);
+        text += fmt::format("Left out, {} testable: error {:.3f} in the median, {:.3f} RMS, {:.3f} at worst ({}).",
+                            spread.rows == 1 ? "1 is" : fmt::format("{} are", spread.rows), spread.median, spread.rms,
+                            spread.worst, spread.worst_row);
         if (const auto skill = spread.skill())
             text += fmt::format(" Null model: {:.3f} RMS; skill {:+.2f}.", *spread.null_rms, *skill);
     }
@@ -67,7 +70,7 @@ std::string folds_text(const std::vector<GpuFolds>& cards, TerminalStyle style) 
                        {"error", "sigma"},
                        {"null", ""},
                        {"", "", true}},
-                      rows, style.colour) +
+                      rows, style) +
            "\n" + sentences;
 }
 

@@ -118,7 +118,7 @@ TEST(Laws, NoHazardMeansTheReferencePictureForEverySeed) {
             for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
                 SCOPED_TRACE(fmt::format("{}, seed {}", describe(one, design, {}), seed));
                 const RunResult run = one.replay.run(design, jitter, {.seed = seed});
-                EXPECT_EQ(run.unexplained_pixels, 0U);
+                EXPECT_EQ(run.unexplained_pixels(), 0U);
                 // Triangles in another order have a reference of their own: it differs in ties.
                 const bool same = support::keeps_submission(design) ? same_picture(one, run) : run.wrong_pixels == 0;
                 EXPECT_EQ(same, run.wrong_pixels == 0);
@@ -137,7 +137,7 @@ TEST(Laws, EveryWrongPixelIsExplainedByARecordedHazard) {
     for_every_run(jitter, [](const Case& one, const std::string& design, const Settings& settings) {
         for (std::uint64_t seed = 1; seed <= tests::repetitions(4); ++seed) {
             const RunResult run = one.replay.run(design, settings, {.seed = seed});
-            EXPECT_EQ(run.unexplained_pixels, 0U);
+            EXPECT_EQ(run.unexplained_pixels(), 0U);
             const auto& hazards = run.hazards;
             EXPECT_EQ(hazards.total(), hazards.of(pipeline::HazardClass::h1_in_flight) +
                                            hazards.of(pipeline::HazardClass::h2_write_path) +
@@ -276,13 +276,13 @@ TEST(Laws, PassesAndDrawsAddUpToTheRun) {
         }
         EXPECT_EQ(cycles, run.cycles);
         EXPECT_EQ(bytes, counter(run.bytes, "dram/bytes"));
-        for (const pipeline::DrawResult& draw : run.draws) {
-            quads += counter(draw.counters, "quads");
-            fragments += counter(draw.counters, "fragments");
-            for (const auto& item : draw.counters.items())
-                if (item.key().starts_with("dram_")) draw_bytes += item.value().get<std::uint64_t>();
-            if (counter(draw.counters, "quads") != 0) {
-                EXPECT_LE(counter(draw.counters, "first_cycle"), counter(draw.counters, "last_cycle"));
+        for (std::size_t draw = 0; draw < run.draws.size(); ++draw) {
+            quads += run.draw_counter(draw, "quads");
+            fragments += run.draw_counter(draw, "fragments");
+            for (const std::string& name : run.draw_counters)
+                if (name.starts_with("dram_")) draw_bytes += run.draw_counter(draw, name);
+            if (run.draw_counter(draw, "quads") != 0) {
+                EXPECT_LE(run.draw_counter(draw, "first_cycle"), run.draw_counter(draw, "last_cycle"));
             }
         }
         EXPECT_EQ(quads, counter(run.stages, "rop/counters/quads"));

@@ -86,7 +86,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Mistake{compare_with("--set", "rop.queue"), 1, "expected SECTION.KEY=VALUE"},
                       Mistake{compare_with("--set", "rop.queue=many"), 1, "rop.queue"},
                       Mistake{compare_with("--set", "workload.opcity=1"), 1, "did you mean 'opacity'?"},
-                      Mistake{compare_with("--threads", "0"), 1, "--threads: expected 1 to 1024"},
+                      Mistake{compare_with("--threads", "0"), 1, "--threads: expected a whole number from 1 to 1024"},
                       Mistake{compare_with("--seed", "-1"), 1, "--seed"},
                       Mistake{compare_with("--camera", "7"), 1, "camera '7'"},
                       Mistake{compare_with("--camera", "1,2,3"), 1, "ex,ey,ez,tx,ty,tz,fovy"},
@@ -112,13 +112,13 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{{"calibrate", "geometry", "--write", "/no/such"}, 1, "--write: /no/such"},
         Mistake{{"calibrate", "geometri"}, 1, "expected geometry or peeling, got 'geometri'"},
         Mistake{{"calibrate", "geometry", "--gpus", "g80"}, 1, "'g80' was not measured"},
-        Mistake{{"calibrate", "geometry", "--folds", "1"}, 1, "--folds: expected 2 to 1000"},
+        Mistake{{"calibrate", "geometry", "--folds", "1"}, 1, "--folds: expected a whole number from 2 to 1000"},
         Mistake{{"calibrate", "geometry", "--folds", "two"}, 1, "--folds"},
         Mistake{{"calibrate", "geometry", "--folds", "2", "--write", "."}, 1, "--folds: what folds find is not"},
         Mistake{{"calibrate", "peeling", "--gpus", "g70"}, 1, "'g70' was not measured"},
         Mistake{{"calibrate", "peeling", "--fidelity", "estimate"}, 1, "expected one of sampled, detailed"},
         Mistake{{"study", "batchin"}, 1, "did you mean 'batching'?"},
-        Mistake{{"study", "/no/such.toml"}, 1, "/no/such.toml: cannot be read"}));
+        Mistake{{"study", "/no/such.toml"}, 1, "/no/such.toml: there is no such file"}));
 
 // A triangle as glTF, so that one thing at a time can be made wrong.
 std::string triangle(const std::string& buffer, int index_count, int largest_count, const std::string& length) {

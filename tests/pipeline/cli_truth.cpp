@@ -68,9 +68,10 @@ TEST_F(CliTruth, SecondRunFindsTheSameInTheCache) {
     found.erase("host");
     EXPECT_EQ(traced, found);
     ASSERT_EQ(first.files(), second.files());
-    const std::vector<std::string> expected{"composite.exr", "composite.png", "layer0.png",     "layer1.png",
-                                            "layer2.png",    "layer3.png",    "layers.exr",     "overlap.exr",
-                                            "overlap.png",   "truth.json",    "visibility.exr", "visibility.png"};
+    const std::vector<std::string> expected{".ropsim-files", "composite.exr", "composite.png", "layer0.png",
+                                            "layer1.png",    "layer2.png",    "layer3.png",    "layers.exr",
+                                            "overlap.exr",   "overlap.png",   "truth.json",    "visibility.exr",
+                                            "visibility.png"};
     EXPECT_EQ(first.files(), expected);
     for (const std::string& file : first.files())
         if (file != "truth.json") {
@@ -130,8 +131,8 @@ TEST_F(CliTruth, SaysWhatIsWrongInOneLine) {
     expect({"--light", "1,2,3"}, 1, "--light: expected nine numbers");
     expect({"--light", "0,6,0,1,0,0,1,0,1"}, 1, "--light: expected two half edges at right angles");
     expect({"--light", "0,6,0,0,0,0,1,0,1"}, 1, "--light: expected two half edges at right angles");
-    expect({"--rays", "0"}, 1, "--rays: expected 1 to 1000000, got '0'");
-    expect({"--layers", "65"}, 1, "--layers: expected 1 to 64");
+    expect({"--rays", "0"}, 1, "--rays: expected a whole number from 1 to 1000000, got '0'");
+    expect({"--layers", "65"}, 1, "--layers: expected a whole number from 1 to 64");
     expect({"--set", "rop.queue=3"}, 1, "--set: expected workload.KEY=VALUE");
     expect({"--set", "workload.opacitty=1"}, 1, "opacity");
     expect({"--lihgt", "1"}, 2, "did you mean '--light'?");

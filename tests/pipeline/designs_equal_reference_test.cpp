@@ -139,14 +139,14 @@ TEST(EqualReference, K3_ScoreboardReleasedTooEarlyOrReadingStaleLinesIsNotProtec
                   early.hazards.of(pipeline::HazardClass::h3_stale_line),
               0U);
     EXPECT_GT(early.wrong_pixels, 0U);
-    EXPECT_EQ(early.unexplained_pixels, 0U);
+    EXPECT_EQ(early.unexplained_pixels(), 0U);
     // Through the texture cache, lines that were filled before survive the scoreboard.
     const RunResult stale = layers().run("scoreboard", {"scoreboard.bypass_l1=false", "texture.l1_bytes=1048576"});
     EXPECT_GT(stale.hazards.of(pipeline::HazardClass::h3_stale_line), 0U);
     EXPECT_EQ(stale.hazards.of(pipeline::HazardClass::h1_in_flight) +
                   stale.hazards.of(pipeline::HazardClass::h2_write_path),
               0U);
-    EXPECT_EQ(stale.unexplained_pixels, 0U);
+    EXPECT_EQ(stale.unexplained_pixels(), 0U);
 }
 
 TEST(EqualReference, K3_BlenderForEveryOptionThatProtects) {
@@ -163,7 +163,7 @@ TEST(EqualReference, K3_BlenderWithoutInterlockIsNotProtected) {
     const RunResult run = replay.run("blender", {"blender.interlock=none", "blender.latency=500"});
     EXPECT_GT(run.hazards.total(), 0U);
     EXPECT_GT(run.wrong_pixels, 0U);
-    EXPECT_EQ(run.unexplained_pixels, 0U);
+    EXPECT_EQ(run.unexplained_pixels(), 0U);
 }
 
 TEST(EqualReference, K3_MultipassForEveryOptionThatKeepsAllLayers) {
@@ -237,7 +237,7 @@ void expect_reference_on_real_scenes(const Settings& knobs) {
             expect_reference(replay, design);
         }
         const RunResult run = replay.run("existing");
-        EXPECT_EQ(run.unexplained_pixels, 0U) << scene.file;
+        EXPECT_EQ(run.unexplained_pixels(), 0U) << scene.file;
         EXPECT_EQ(run.hazards.total() == 0, run.wrong_pixels == 0 && run.lost_updates == 0) << scene.file;
     }
 }

@@ -128,7 +128,7 @@ TEST(Existing, K2_UnboundedTextureCacheIsStaleAtEveryPixel) {
         EXPECT_EQ(run.hazards.total(), 512U * 512U) << visibility;
         EXPECT_EQ(run.hazards.pixels, 512U * 512U) << visibility;
         EXPECT_EQ(run.wrong_pixels, 512U * 512U) << visibility;
-        EXPECT_EQ(run.unexplained_pixels, 0U) << visibility;
+        EXPECT_EQ(run.unexplained_pixels(), 0U) << visibility;
     }
 }
 
@@ -283,7 +283,7 @@ TEST(Existing, LosesFragmentsOnDenseMeshesAndOnDiscs) {
         EXPECT_GT(run.wrong_pixels, 0U);
         EXPECT_GT(run.lost_fragments, 0U);
         EXPECT_GT(run.lost_updates, 0U);
-        EXPECT_EQ(run.unexplained_pixels, 0U);
+        EXPECT_EQ(run.unexplained_pixels(), 0U);
         EXPECT_LE(run.wrong_pixels, run.hazards.pixels);
     }
 }
@@ -295,7 +295,7 @@ TEST(Existing, LongLosesFragmentsOnTheDensestScan) {
     const RunResult run = replay.run("existing");
     EXPECT_GT(run.hazards.total(), 0U);
     EXPECT_GT(run.wrong_pixels, 0U);
-    EXPECT_EQ(run.unexplained_pixels, 0U);
+    EXPECT_EQ(run.unexplained_pixels(), 0U);
     RecordProperty("hazards_per_million", static_cast<int>(1'000'000 * run.hazards.total() / run.fragments));
     RecordProperty("wrong_pixels", static_cast<int>(run.wrong_pixels));
 }
@@ -307,7 +307,7 @@ TEST(Existing, LongLosesFragmentsOnTheDemoScene) {
     const RunResult run = replay.run("existing");
     EXPECT_GT(run.hazards.total(), 0U);
     EXPECT_GT(run.wrong_pixels, 0U);
-    EXPECT_EQ(run.unexplained_pixels, 0U);
+    EXPECT_EQ(run.unexplained_pixels(), 0U);
     RecordProperty("hazards_per_million", static_cast<int>(1'000'000 * run.hazards.total() / run.fragments));
 }
 

@@ -46,9 +46,11 @@ TEST(Heuristics, K6_HazardsThatAreLeftLieWithinOneBatch) {
     const pipeline::Frame frame = traces::submitted(mesh().frame, plan);
     const auto streams = pipeline::rasterize_frame(frame);
     const RunResult run = mesh().run("sorted-batched");
-    for (const pipeline::HazardPair& pair : run.pairs)
-        EXPECT_EQ(streams[0].draw_of(pair.victim), streams[0].draw_of(pair.aggressor));
-    EXPECT_EQ(run.unexplained_pixels, 0U);
+    const auto part_of = [&stream = streams[0]](pipeline::QuadId quad) {
+        return stream.range_of(stream.triangles[stream.quads[quad].triangle].primitive);
+    };
+    for (const pipeline::HazardPair& pair : run.pairs) EXPECT_EQ(part_of(pair.victim), part_of(pair.aggressor));
+    EXPECT_EQ(run.unexplained_pixels(), 0U);
 }
 
 TEST(Heuristics, TrianglesAreSortedFromTheFrontAndNoneIsLost) {
@@ -73,15 +75,17 @@ TEST(Heuristics, TrianglesAreSortedFromTheFrontAndNoneIsLost) {
 
 TEST(Heuristics, BatchesAreDrawsOfAtMostThatManyTrianglesEachWithAFlush) {
     const pipeline::Frame frame = traces::submitted(mesh().frame, {.batch_triangles = 32, .flush_draws = true});
-    const auto& draws =
-        frame.passes.back().kind == pipeline::PassKind::draw ? frame.passes.back().draws : frame.passes[1].draws;
-    EXPECT_EQ(draws.size(), 2 * ((20000U + 31) / 32));
+    const pipeline::Pass& pass =
+        frame.passes.back().kind == pipeline::PassKind::draw ? frame.passes.back() : frame.passes[1];
+    EXPECT_EQ(pass.parts.size(), 2 * ((20000U + 31) / 32));
     std::uint64_t triangles = 0;
-    for (const std::uint32_t draw : draws) {
-        const auto& geometry = frame.resources->geometries[frame.draws[draw].geometry];
-        if (frame.draws[draw].name == "flush") continue;
-        EXPECT_LE(geometry.triangle_count(), 32U);
-        triangles += geometry.triangle_count();
+    for (std::size_t i = 0; i < pass.parts.size(); ++i) {
+        const pipeline::DrawPart& part = pass.parts[i];
+        EXPECT_EQ(frame.draws[part.draw].name == "flush", i % 2 == 1);
+        if (i % 2 == 1) continue;
+        EXPECT_LE(part.triangles, 32U);
+        EXPECT_EQ(part.first_triangle, triangles);
+        triangles += part.triangles;
     }
     EXPECT_EQ(triangles, 20000U);
     frame.resources->validate("the resubmitted frame");

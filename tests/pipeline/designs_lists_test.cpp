@@ -38,7 +38,7 @@ TEST(LinkedList, LosesWhatDoesNotFitAndSaysWhere) {
     EXPECT_EQ(run.hazards.total(), 0U);
     EXPECT_GT(run.wrong_pixels, 0U);
     EXPECT_GE(run.overflow_pixels, run.wrong_pixels);
-    EXPECT_EQ(run.unexplained_pixels, 0U);
+    EXPECT_EQ(run.unexplained_pixels(), 0U);
     EXPECT_LE(counter(run.stages, "rop/counters/kept"), 10000U);
     EXPECT_EQ(counter(run.stages, "rop/counters/kept") + counter(run.stages, "rop/counters/not_kept"),
               deep().streams[0].fragments);
@@ -126,7 +126,7 @@ TEST(StencilRouted, LosesExactlyWhatComesAfterItsSamples) {
         const RunResult run = deep().run("stencil-routed", {fmt::format("stencil-routed.passes={}", passes)});
         EXPECT_EQ(run.overflow_pixels, pixels_deeper_than(deep(), 8 * passes)) << passes;
         EXPECT_LE(run.wrong_pixels, run.overflow_pixels);
-        EXPECT_EQ(run.unexplained_pixels, 0U);
+        EXPECT_EQ(run.unexplained_pixels(), 0U);
         EXPECT_EQ(run.hazards.total(), 0U);
     }
     EXPECT_GT(pixels_deeper_than(deep(), 8), 0U);

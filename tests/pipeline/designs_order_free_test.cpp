@@ -107,7 +107,7 @@ TEST(OrderFree, FragmentsOfEqualDepthAreAllThatMayDiffer) {
             const RunResult run = replay.run(design, all, {.seed = seed});
             EXPECT_EQ(run.hazards.total(), 0U);
             EXPECT_EQ(run.tied_pixels, run.wrong_pixels) << design;
-            EXPECT_EQ(run.unexplained_pixels, 0U) << design;
+            EXPECT_EQ(run.unexplained_pixels(), 0U) << design;
         }
     // In order, the first arrival stays.
     EXPECT_EQ(replay.run("peel-rop").wrong_pixels, 0U);

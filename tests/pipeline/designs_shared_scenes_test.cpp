@@ -59,7 +59,7 @@ void expect_reference(const Replay& replay, const std::string& place) {
         SCOPED_TRACE(design + " on " + place);
         const RunResult run = replay.run(design);
         EXPECT_EQ(run.hazards.total(), 0U);
-        EXPECT_EQ(run.unexplained_pixels, 0U);
+        EXPECT_EQ(run.unexplained_pixels(), 0U);
         if (!support::holds_everything(design)) {
             EXPECT_LE(run.wrong_pixels, run.overflow_pixels);
             continue;

@@ -86,7 +86,7 @@ TEST(HazardKinds, PHY_H3_OneQuadAtATimeUntilItsStoreIsAppliedHasNoConcurrency) {
             mesh().run("existing", visibility(name, {"fragment.pipes=1", "scheduler.quads_until_store=1"}));
         EXPECT_EQ(run.hazards.of(HazardKind::concurrency), 0U) << name;
         EXPECT_GT(run.hazards.of(HazardKind::incoherence), 0U) << name;
-        EXPECT_EQ(run.unexplained_pixels, 0U) << name;
+        EXPECT_EQ(run.unexplained_pixels(), 0U) << name;
     }
     const RunResult coherent =
         mesh().run("existing", visibility("rop_cache", {"fragment.pipes=1", "scheduler.quads_until_store=1",

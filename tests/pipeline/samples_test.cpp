@@ -93,7 +93,7 @@ TEST(Sampled, WrongSamplesOfUnprotectedDesignsAreExplainedByHazards) {
                                                     {"blender", "blender.interlock=none"}}) {
                 SCOPED_TRACE(fmt::format("{} on {} with {} samples", design, scene, samples));
                 const RunResult run = replay.run(design, {setting, "blender.latency=300"});
-                EXPECT_EQ(run.unexplained_pixels, 0U);
+                EXPECT_EQ(run.unexplained_pixels(), 0U);
                 EXPECT_LE(run.wrong_pixels, run.hazards.pixels);
                 EXPECT_LE(run.hazards.pixels, 32U * 32U);
                 for (const pipeline::HazardPair& pair : run.pairs) EXPECT_LT(pair.y, 32U);

@@ -42,7 +42,7 @@ TEST(SoftShadows, LightAndEyeSeeTheSceneOnSurfacesOfTheirOwnSizes) {
     for (const char* design : {"existing", "blender", "multipass", "linked-list"}) {
         const pipeline::RunResult run = replay.run(design);
         EXPECT_EQ(run.wrong_mask.size(), 128U * 128U) << design;
-        EXPECT_EQ(run.unexplained_pixels, 0U) << design;
+        EXPECT_EQ(run.unexplained_pixels(), 0U) << design;
         EXPECT_EQ(run.depth, replay.reference.depth) << design;
         EXPECT_EQ(run.colour, replay.reference.colour) << design;
     }
@@ -84,7 +84,7 @@ TEST(SoftShadows, APassThatNobodyReadsIsNotThere) {
 
 TEST(SoftShadows, LightPassesFetchPositionsOnly) {
     const pipeline::RunResult run = shadows({"map_size=64"}).run("blender");
-    const auto bytes = [&](std::size_t draw) { return run.draws[draw].counters["vertex_bytes"].get<std::uint64_t>(); };
+    const auto bytes = [&](std::size_t draw) { return run.draw_counter(draw, "vertex_bytes"); };
     ASSERT_EQ(run.draws.size(), 5U); // blob and ground, the same from the light, the screen
     EXPECT_EQ(run.draws[2].name, run.draws[0].name + " (light)");
     EXPECT_LT(bytes(2), bytes(0));

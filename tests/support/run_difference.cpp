@@ -76,7 +76,7 @@ std::string difference(const RunResult& a, const RunResult& b) {
     compare.value("mean_staleness", a.mean_staleness, b.mean_staleness);
     compare.value("lost_updates", a.lost_updates, b.lost_updates);
     compare.value("wrong_pixels", a.wrong_pixels, b.wrong_pixels);
-    compare.value("unexplained_pixels", a.unexplained_pixels, b.unexplained_pixels);
+    compare.json("wrong_because", sim::to_json(a.wrong_because), sim::to_json(b.wrong_because));
     compare.value("lost_fragments", a.lost_fragments, b.lost_fragments);
     compare.list("layers", a.layers, b.layers, [&](const auto& x, const auto& y) {
         compare.value("layer", std::tuple(x.missing, x.duplicate, x.unsorted),
@@ -96,9 +96,10 @@ std::string difference(const RunResult& a, const RunResult& b) {
         compare.value("pass", std::tuple(x.name, x.first_cycle, x.cycles), std::tuple(y.name, y.first_cycle, y.cycles));
         compare.json("pass " + x.name, x.counters, y.counters);
     });
+    compare.value("draw_counters", a.draw_counters, b.draw_counters);
     compare.list("draws", a.draws, b.draws, [&](const auto& x, const auto& y) {
         compare.value("draw", std::tuple(x.name, x.draw), std::tuple(y.name, y.draw));
-        compare.json("draw " + x.name, x.counters, y.counters);
+        compare.value("draw " + x.name, x.counters, y.counters);
     });
     return compare.take();
 }

@@ -98,7 +98,8 @@ RunResult common_run(const std::string& design) {
                 {"added_comparators", 0},
                 {"added_alu_lanes", 0}};
     run.passes.push_back({"layers, all", 5, 6000, {{"rasterizer", {{"quads", 10}}}}});
-    run.draws.push_back({"draw \"a\"", 0, {{"rasterizer", {{"quads", 10}}}}});
+    run.draw_counters = {"quads"};
+    run.draws.push_back({"draw \"a\"", 0, {10}});
     return run;
 }
 

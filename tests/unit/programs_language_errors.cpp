@@ -226,11 +226,11 @@ TEST(LanguageErrors, FilesThatAreNone) {
         return {};
     };
     const ropsim_test::TemporaryFolder folder;
-    EXPECT_EQ(load_error("no_such.kb"), "no_such.kb: expected a file");
-    EXPECT_EQ(load_error(folder.path().string()), folder.path().string() + ": expected a file");
+    EXPECT_EQ(load_error("no_such.kb"), "no_such.kb: there is no such file");
+    EXPECT_EQ(load_error(folder.path().string()), folder.path().string() + ": expected a file, got a folder");
     const std::string large = (folder.path() / "large.kb").string();
     ropsim_test::write_text(large, std::string((1U << 20) + 1, '#'));
-    EXPECT_EQ(load_error(large), large + ": expected a program of at most 1048576 bytes");
+    EXPECT_EQ(load_error(large), large + ": expected a file of at most 1,048,576 bytes");
 }
 
 } // namespace programs_language_errors_test

@@ -23,6 +23,14 @@ TEST(ReportsCatalogue, EveryEntryHasAUniqueNameAndASummary) {
     }
 }
 
+TEST(ReportsCatalogue, NamesAreThoseOfTheEntries) {
+    for (const auto& topic : reports::catalogue_topics()) {
+        std::vector<std::string> names;
+        for (const auto& entry : topic.entries()) names.push_back(entry.name);
+        EXPECT_EQ(topic.names(), names) << topic.name;
+    }
+}
+
 TEST(ReportsCatalogue, ParametersOfGpuDesignsAndWorkloadsAreInOneList) {
     for (const char* name : {"rop.queue", "scoreboard.side_buffer", "workload.k"})
         EXPECT_FALSE(reports::catalogue_find(name).empty()) << name;

@@ -1,6 +1,7 @@
 // A file appears complete or not at all, and a failure is one line that names it.
 #include "reports/atomic_file.hpp"
 #include "sim/check.hpp"
+#include "sim/unfinished_file.hpp"
 #include "tests/support/program_run.hpp"
 
 #include <csignal>
@@ -48,10 +49,32 @@ TEST(ReportsFiles, WritesAndReplaces) {
     EXPECT_EQ(folder.files(), std::vector<std::string>{"a.txt"});
 }
 
+TEST(ReportsFiles, AFolderThatIsBegunAgainKeepsForeignFilesOnly) {
+    const TemporaryFolder folder;
+    reports::begin_report_folder(folder.path());
+    std::filesystem::create_directory(folder.path() / "design");
+    reports::write_file(folder.path() / "a.txt", "one");
+    reports::write_file(folder.path() / "design" / "b.txt", "two");
+    ropsim_test::write_text(folder.path() / "mine.txt", "three");
+    reports::begin_report_folder(folder.path());
+    EXPECT_EQ(folder.files(), (std::vector<std::string>{".ropsim-files", "mine.txt"}));
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "design"));
+}
+
+TEST(ReportsFiles, NotesCannotNameFilesElsewhere) {
+    const TemporaryFolder folder;
+    std::filesystem::create_directory(folder.path() / "out");
+    ropsim_test::write_text(folder.path() / "precious.txt", "x");
+    ropsim_test::write_text(folder.path() / "out" / ".ropsim-files",
+                            "../precious.txt\n" + (folder.path() / "precious.txt").string() + "\n");
+    reports::begin_report_folder(folder.path() / "out");
+    EXPECT_TRUE(std::filesystem::exists(folder.path() / "precious.txt"));
+}
+
 TEST(ReportsFiles, WithoutCommitNothingStays) {
     const TemporaryFolder folder;
     {
-        const reports::AtomicFile file(folder.path() / "a.txt");
+        const sim::UnfinishedFile file(folder.path() / "a.txt");
         std::ofstream(file.temporary()) << "half";
         EXPECT_EQ(folder.files().size(), 1U);
     }

@@ -1,6 +1,7 @@
 #include "traces/gltf/glb_file.hpp"
 
 #include "sim/check.hpp"
+#include "sim/unfinished_file.hpp"
 
 #include <algorithm>
 #include <array>
@@ -20,19 +21,16 @@ namespace {
 /// A file that appears under its name only when it is complete.
 class CompleteFile {
   public:
-    explicit CompleteFile(const fs::path& path)
-        : path_(path),
-          temporary_(path.parent_path() / fmt::format(".{}.{}.part", path.filename().string(), ::getpid())) {
+    explicit CompleteFile(const fs::path& path) : file_(path) {
         std::error_code error;
         const fs::file_status status = fs::status(path, error);
         if (path.filename().empty() || (fs::exists(status) && !fs::is_regular_file(status)))
             throw sim::InputError(fmt::format("{}: expected the name of a file to write", path.string()));
-        descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+        descriptor_ = ::open(file_.temporary().c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
         if (descriptor_ < 0) fail();
     }
     ~CompleteFile() {
         if (descriptor_ >= 0) ::close(descriptor_);
-        if (!done_) ::unlink(temporary_.c_str());
     }
     CompleteFile(const CompleteFile&) = delete;
     CompleteFile& operator=(const CompleteFile&) = delete;
@@ -49,18 +47,16 @@ class CompleteFile {
         const int descriptor = descriptor_;
         descriptor_ = -1;
         if (::close(descriptor) != 0) fail(); // some file systems notice only here that the disk is full
-        if (::rename(temporary_.c_str(), path_.c_str()) != 0) fail();
-        done_ = true;
+        if (const int error = file_.commit(); error != 0) fail(error);
     }
 
   private:
-    [[noreturn]] void fail() const {
-        throw sim::InputError(fmt::format("{}: cannot be written: {}", path_.string(), std::strerror(errno)));
+    [[noreturn]] void fail(int error = errno) const {
+        throw sim::InputError(fmt::format("{}: cannot be written: {}", file_.path().string(), std::strerror(error)));
     }
 
-    fs::path path_, temporary_;
+    sim::UnfinishedFile file_;
     int descriptor_ = -1;
-    bool done_ = false;
 };
 
 constexpr std::uint32_t magic = 0x46546C67, json_chunk = 0x4E4F534A, binary_chunk = 0x004E4942;

@@ -1,6 +1,7 @@
 // A1: stream batching. Triangles keep their order and are cut into draws of a bounded number of vertices, whose indices
 // then get by with 16 bits (specification 004, section 3.1).
 #include "sim/check.hpp"
+#include "sim/counted.hpp"
 #include "traces/preparation/conservation.hpp"
 #include "traces/preparation/rebuild.hpp"
 #include "traces/preparation/steps.hpp"
@@ -86,8 +87,8 @@ Applied apply(Scene scene, const BatchParams& params) {
         return parts;
     });
     check_same_triangles(before, drawn_triangles(applied.scene), false);
-    applied.notes.push_back(fmt::format("{} draws became {}, {} vertices {}", draws, applied.scene.draws.size(),
-                                        vertices, applied.scene.vertices));
+    applied.notes.push_back(fmt::format("{} became {}, {} {}", sim::counted(draws, "draw"), applied.scene.draws.size(),
+                                        sim::counted(vertices, "vertex"), applied.scene.vertices));
     return applied;
 }
 

@@ -2,6 +2,7 @@
 // order, attributes side by side, floats for everything but colours, which are four unsigned bytes (specification 004,
 // sections 3.1, 4.6).
 #include "sim/check.hpp"
+#include "sim/counted.hpp"
 #include "traces/preparation/conservation.hpp"
 #include "traces/preparation/formats.hpp"
 #include "traces/preparation/rebuild.hpp"
@@ -84,7 +85,7 @@ Applied apply(Scene scene, const RecommendedParams& params) {
     });
     const std::array changed{Semantic::colour, Semantic::secondary_colour};
     CHECK(check_same_order(batched, applied.scene, changed) == 0.0);
-    applied.notes.push_back(fmt::format("{} draws became {}", draws, applied.scene.draws.size()));
+    applied.notes.push_back(fmt::format("{} became {}", sim::counted(draws, "draw"), applied.scene.draws.size()));
     if (colour_error > 0.0) applied.notes.push_back(fmt::format("colours: largest error {:.2g}", colour_error));
     return applied;
 }

@@ -1,6 +1,7 @@
 // A4: triangle strips, grown greedily in the order of the list by meshoptimizer (specification 004, section 3.1), and
 // joined into one per geometry.
 #include "sim/check.hpp"
+#include "sim/counted.hpp"
 #include "traces/preparation/conservation.hpp"
 #include "traces/preparation/rebuild.hpp"
 #include "traces/preparation/steps.hpp"
@@ -79,7 +80,7 @@ Applied apply(Scene scene, const StripParams& params) {
     applied.scene =
         change_meshes(std::move(scene), TopologyWanted::list, [&](TriangleMesh& mesh) { make_strip(mesh, params); });
     check_same_triangles(before, drawn_triangles(applied.scene), true);
-    applied.notes.push_back(fmt::format("{} indices became {}", indices, indices_of(applied.scene)));
+    applied.notes.push_back(fmt::format("{} became {}", sim::counted(indices, "index"), indices_of(applied.scene)));
     return applied;
 }
 

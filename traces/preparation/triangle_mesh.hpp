@@ -2,6 +2,7 @@
 #pragma once
 
 #include "pipeline/draw.hpp"
+#include "pipeline/functional/vertex_fetch.hpp"
 
 #include <array>
 #include <cstddef>
@@ -11,9 +12,7 @@
 
 namespace traces {
 
-constexpr bool names_a_vertex_twice(const std::array<std::uint32_t, 3>& corners) {
-    return corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0];
-}
+using pipeline::names_a_vertex_twice;
 
 constexpr std::uint32_t no_vertex = ~std::uint32_t{0};
 

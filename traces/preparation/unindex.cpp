@@ -1,4 +1,5 @@
 // Without index buffers: every corner of every triangle is a vertex of its own.
+#include "sim/counted.hpp"
 #include "traces/preparation/conservation.hpp"
 #include "traces/preparation/rebuild.hpp"
 #include "traces/preparation/table.hpp"
@@ -35,7 +36,7 @@ Applied apply(Scene scene, const UnindexParams&) {
     Applied applied;
     applied.scene = change_meshes(std::move(scene), TopologyWanted::list, repeat_vertices);
     check_same_triangles(before, drawn_triangles(applied.scene), false);
-    applied.notes.push_back(fmt::format("{} vertices became {}", vertices, applied.scene.vertices));
+    applied.notes.push_back(fmt::format("{} became {}", sim::counted(vertices, "vertex"), applied.scene.vertices));
     return applied;
 }
 

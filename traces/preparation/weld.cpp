@@ -1,5 +1,6 @@
 // Vertices whose attributes are equal bit for bit become one.
 #include "sim/check.hpp"
+#include "sim/counted.hpp"
 #include "traces/preparation/conservation.hpp"
 #include "traces/preparation/rebuild.hpp"
 #include "traces/preparation/table.hpp"
@@ -36,7 +37,7 @@ Applied apply(Scene scene, const WeldParams&) {
     Applied applied;
     applied.scene = change_meshes(std::move(scene), TopologyWanted::list, weld_mesh);
     check_same_triangles(before, drawn_triangles(applied.scene), false);
-    applied.notes.push_back(fmt::format("{} vertices became {}", vertices, applied.scene.vertices));
+    applied.notes.push_back(fmt::format("{} became {}", sim::counted(vertices, "vertex"), applied.scene.vertices));
     return applied;
 }
 

@@ -7,13 +7,12 @@
 #include "models/programs/pictures.hpp"
 #include "ropsim_build.hpp"
 #include "sim/check.hpp"
+#include "sim/read_file.hpp"
 
 #include <algorithm>
 #include <array>
 #include <filesystem>
 #include <fmt/format.h>
-#include <fstream>
-#include <iterator>
 #include <system_error>
 
 namespace models {
@@ -102,8 +101,11 @@ ProgramChoice user_program(std::string name, std::string text, std::uint32_t k, 
     language::check(program);
     const std::uint32_t entries = k == 0 ? program.default_k : k;
     if (entries < program.least_k || entries > program.most_k)
-        throw sim::InputError(fmt::format("{}: k: expected {} to {}, got {}", program.source.name, program.least_k,
-                                          program.most_k, entries));
+        throw sim::InputError(fmt::format("{}: k: expected {}, got {}", program.source.name,
+                                          program.least_k == program.most_k
+                                              ? std::to_string(program.least_k)
+                                              : fmt::format("{} to {}", program.least_k, program.most_k),
+                                          entries));
     language::CompiledProgram compiled = language::compile(program, entries, overrides);
     auto picture = picture_of(program);
     return {std::make_shared<const UserProgram>(std::move(program), std::move(compiled), entries), std::move(picture)};
@@ -111,14 +113,7 @@ ProgramChoice user_program(std::string name, std::string text, std::uint32_t k, 
 
 ProgramChoice load_user_program(std::string_view path, std::uint32_t k, const language::Overrides& overrides) {
     const fs::path file = find(path);
-    std::error_code failed;
-    if (!fs::is_regular_file(file, failed)) throw sim::InputError(fmt::format("{}: expected a file", path));
-    if (const std::uintmax_t bytes = fs::file_size(file, failed); failed || bytes > longest_text)
-        throw sim::InputError(fmt::format("{}: expected a program of at most {} bytes", path, longest_text));
-    std::ifstream stream(file, std::ios::binary);
-    std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-    if (!stream) throw sim::InputError(fmt::format("{}: cannot be read", path));
-    return user_program(std::string(path), std::move(text), k, overrides);
+    return user_program(std::string(path), sim::read_file(file, longest_text), k, overrides);
 }
 
 std::vector<std::string> shipped_user_programs() { return ropsim_build::data_files("models/programs", ".kb"); }

@@ -74,6 +74,22 @@ ScalarRange scalar_range(const pipeline::Frame& frame, std::string_view place) {
     return range;
 }
 
+float fragment_scalar(const Scene& scene, float value) { return std::ldexp(value, -scene.scalar_exponent); }
+
+std::vector<float> iso_values_of(pipeline::Frame& frame, const Scene& scene, const std::vector<float>& wanted,
+                                 ScalarRange range) {
+    if (wanted.empty()) return {0.5F * range.lo + 0.5F * range.hi};
+    std::vector<float> values;
+    for (const float value : wanted) {
+        values.push_back(fragment_scalar(scene, value));
+        if (!(values.back() >= range.lo && values.back() <= range.hi))
+            frame.notes.push_back(fmt::format("iso-value {} has no surface: the scalars are {} to {}", value,
+                                              std::ldexp(range.lo, scene.scalar_exponent),
+                                              std::ldexp(range.hi, scene.scalar_exponent)));
+    }
+    return values;
+}
+
 void prepare_scalars(pipeline::Frame& frame, bool sorted) {
     auto resources = std::make_shared<pipeline::Resources>(*frame.resources);
     for (pipeline::Material& material : resources->materials) {

@@ -1,5 +1,8 @@
 // Valid glTF that readers stumble over, and what may be wrong because nothing depends on it.
+#include "sim/check.hpp"
 #include "tests/support/scene_files.hpp"
+#include "traces/camera.hpp"
+#include "traces/workloads.hpp"
 
 #include <gtest/gtest.h>
 
@@ -73,6 +76,22 @@ TEST(GltfTolerance, ViewsAndSkinsBelowMirrorsKeepTheirFaces) {
     const glm::mat3 turned(file.load().cameras.at(0).to_world);
     EXPECT_NEAR(glm::determinant(turned), 1.0F, 1e-6F);
     EXPECT_NEAR(glm::distance(turned[2], glm::normalize(glm::vec3(0.96F, 0, 4 * 0.28F))), 0.0F, 1e-6F);
+}
+
+TEST(GltfTolerance, ScalarsThatAColourCannotHoldAreRefused) {
+    GltfFile file = triangle_file();
+    file.json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] =
+        file.add({1, 0, 0, 70000, 0, 0, 3, 0, 0}, "VEC3");
+    const Scene scene = file.load();
+    const pipeline::View view = traces::make_view(scene, "auto", 8, 8);
+    try {
+        traces::build_frame(scene, view, "isosurface");
+        FAIL() << "70000 is above what the shader lets through";
+    } catch (const sim::InputError& error) {
+        EXPECT_STREQ(error.what(),
+                     "workload isosurface: expected scalars of at most 65504, which the colours of fragments "
+                     "hold, got 70000");
+    }
 }
 
 } // namespace gltf_tolerance_test

@@ -16,6 +16,8 @@ using pipeline::Semantic;
 
 namespace {
 
+constexpr float most_in_colour = 65504.0F; ///< the shader bounds colours by it
+
 std::vector<double> centroid_distances(const pipeline::Resources& resources, const pipeline::Geometry& geometry,
                                        const glm::dmat4& to_eye) {
     const pipeline::AttributeReader position(resources, *geometry.find(Semantic::position));
@@ -71,6 +73,11 @@ ScalarRange scalar_range(const pipeline::Frame& frame, std::string_view place) {
             range.hi = std::max(range.hi, scalar);
         }
     }
+    const float largest = std::max(std::fabs(range.lo), std::fabs(range.hi));
+    if (!frame.draws.empty() && largest > most_in_colour)
+        throw sim::InputError(
+            fmt::format("{}: expected scalars of at most {}, which the colours of fragments hold, got {}", place,
+                        most_in_colour, largest));
     return range;
 }
 

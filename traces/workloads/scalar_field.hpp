@@ -15,7 +15,7 @@ struct ScalarRange {
 };
 
 /// Least and largest scalar of the drawn geometries. Throws sim::InputError, beginning with `place`, when one of them
-/// has no vertex colours.
+/// has no vertex colours, or scalars that a colour cannot hold.
 ScalarRange scalar_range(const pipeline::Frame& frame, std::string_view place);
 
 /// A parameter in the scene's own scalars as the scalar of a fragment.

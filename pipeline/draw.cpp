@@ -1,5 +1,10 @@
 #include "pipeline/draw.hpp"
 
+#include "sim/check.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+
 namespace pipeline {
 
 namespace {
@@ -16,7 +21,42 @@ std::uint64_t bytes_in_memory(const Texture::Level& level) {
     return tiles_x * tiles_y * 64;
 }
 
+constexpr std::uint64_t most_texels = std::uint64_t{1} << 31U; ///< bytes
+
+std::uint64_t texel_bytes(const std::vector<Texture>& textures) {
+    std::uint64_t bytes = 0;
+    for (const Texture& texture : textures)
+        for (const Texture::Level& level : texture.levels) bytes += std::uint64_t{level.width} * level.height * 4;
+    return bytes;
+}
+
 } // namespace
+
+void Texture::make_empty_levels(std::uint32_t width, std::uint32_t height) {
+    levels.assign(1, {width, height, {}, 0});
+    for (; width > 1 || height > 1; levels.push_back({width, height, {}, 0})) {
+        width = std::max(1U, width / 2);
+        height = std::max(1U, height / 2);
+    }
+}
+
+void Resources::read_textures() const {
+    const std::uint64_t bytes = texel_bytes(textures);
+    const bool any = std::any_of(textures.begin(), textures.end(), [](const Texture& one) { return bool(one.decode); });
+    if (any && bytes > most_texels)
+        throw sim::InputError(fmt::format("textures: expected at most {} MiB of texels, got {} MiB in {} textures",
+                                          most_texels >> 20U, bytes >> 20U, textures.size()));
+    for (Texture& texture : textures) {
+        if (!texture.decode) continue;
+        std::vector<std::uint64_t> addresses;
+        for (const Texture::Level& level : texture.levels) addresses.push_back(level.address);
+        texture.levels[0].rgba = texture.decode();
+        texture.decode = nullptr;
+        texture.make_mips();
+        CHECK(texture.levels.size() == addresses.size());
+        for (std::size_t i = 0; i < addresses.size(); ++i) texture.levels[i].address = addresses[i];
+    }
+}
 
 const VertexAttribute* Geometry::find(Semantic semantic) const {
     for (const VertexAttribute& attribute : attributes)

@@ -10,6 +10,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <glm/glm.hpp>
 #include <string>
 #include <vector>
@@ -148,7 +149,8 @@ enum class Filter : std::uint8_t {
     linear_mip_linear
 };
 
-/// An RGBA8 image with its mip levels (level 0 first, each half the size of the one before, down to 1x1).
+/// An RGBA8 image with its mip levels (level 0 first, each half the size of the one before, down to 1x1). Where
+/// `decode` is set, levels have their sizes but no texels yet.
 struct Texture {
     struct Level {
         std::uint32_t width = 0, height = 0;
@@ -157,12 +159,15 @@ struct Texture {
     };
     std::string name;
     std::vector<Level> levels;
+    std::function<std::vector<std::uint8_t>()> decode; ///< the texels of level 0; throws sim::InputError
     Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
     Filter min_filter = Filter::linear_mip_nearest, mag_filter = Filter::linear;
     bool srgb = true; ///< texels are sRGB-encoded and decoded to linear on read
 
     /// Builds levels 1.. from level 0 by a 2x2 box filter (in linear light when srgb).
     void make_mips();
+    /// One empty level for each size from this one down to 1x1.
+    void make_empty_levels(std::uint32_t width, std::uint32_t height);
 };
 
 enum class AlphaMode : std::uint8_t { opaque, mask, blend };
@@ -193,11 +198,14 @@ struct Draw {
 struct Resources {
     std::vector<Buffer> buffers;
     std::vector<Geometry> geometries;
-    std::vector<Texture> textures;
+    mutable std::vector<Texture> textures; ///< mutable for read_textures() alone, which changes no value that is seen
     std::vector<Material> materials;
 
     /// Gives every buffer and texture level an address in GPU memory, 256-byte aligned, in order.
     void place();
+    /// Decodes the textures that are not yet. To be called by whoever is going to read texels, before; by one thread.
+    /// Throws sim::InputError for an image that cannot be decoded, and for more than 2 GiB of texels.
+    void read_textures() const;
     /// Fills Geometry::runs where primitive restart is on. Index buffers that are too short leave no runs behind, which
     /// validate() refuses.
     void find_runs();

@@ -113,6 +113,7 @@ struct Frame {
     Submission submission = Submission::buffers;
     std::vector<Pass> passes;
     Needs needs;
+    std::vector<std::string> notes;               ///< what was not done as asked for, one line each
     std::vector<LeftOut> left_out;                ///< by the pass graph: culled passes, unread attributes
     std::shared_ptr<const ModifyProgram> program; ///< null when no pass has a k-buffer
     std::shared_ptr<const Resolve> resolve;       ///< null: the layers are composited front to back

@@ -26,10 +26,11 @@ void read_scene(const ComparisonRequest& request, ComparisonInput& input) {
     traces::WorkloadOptions options;
     for (const std::string& setting : request.workload_settings) options.set(setting);
     const traces::Scene scene = traces::load_scene(request.scene);
-    pipeline::View view = traces::make_view(scene, request.camera, request.width, request.height);
+    std::vector<std::string> notes;
+    pipeline::View view = traces::make_view(scene, request.camera, request.width, request.height, &notes);
     view.samples = request.samples;
     input.frame = std::make_shared<const pipeline::Frame>(traces::build_frame(scene, view, request.workload, options));
-    input.scene = facts_of(scene, request.camera);
+    input.scene = facts_of(scene, request.camera, *input.frame, notes);
 }
 
 // A frame that cannot fit would be ended by the system without a word.
@@ -140,16 +141,20 @@ std::size_t Comparison::base_run() const {
     return 0;
 }
 
-SceneFacts facts_of(const traces::Scene& scene, const std::string& camera) {
-    return {scene.name,
-            scene.hash,
-            scene.triangles,
-            scene.triangles_drawn,
-            scene.vertices,
-            scene.draws.size(),
-            scene.resources->textures.size(),
-            camera,
-            scene.notes};
+SceneFacts facts_of(const traces::Scene& scene, const std::string& camera, const pipeline::Frame& frame,
+                    const std::vector<std::string>& notes) {
+    SceneFacts facts{scene.name,
+                     scene.hash,
+                     scene.triangles,
+                     scene.triangles_drawn,
+                     scene.vertices,
+                     scene.draws.size(),
+                     scene.resources->textures.size(),
+                     camera,
+                     traces::view_text(frame.view),
+                     scene.notes};
+    for (const auto* more : {&notes, &frame.notes}) facts.notes.insert(facts.notes.end(), more->begin(), more->end());
+    return facts;
 }
 
 namespace {

@@ -98,8 +98,9 @@ ComparisonInput prepare(const ComparisonRequest& request, const Supervision& sup
 /// Runs every design, several at once. Everything but `host` is the same for any number of threads.
 Comparison compare(ComparisonInput input, const Supervision& supervision = {});
 
-/// What a report says of a scene.
-SceneFacts facts_of(const traces::Scene& scene, const std::string& camera);
+/// What a report says of a scene and of the frame that shows it. `notes` are added to those of both.
+SceneFacts facts_of(const traces::Scene& scene, const std::string& camera, const pipeline::Frame& frame,
+                    const std::vector<std::string>& notes);
 
 /// The threads that 0 stands for.
 unsigned core_count();

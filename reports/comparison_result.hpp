@@ -24,7 +24,8 @@ struct SceneFacts {
     std::uint64_t draws = 0;
     std::uint64_t textures = 0;
     std::string camera;             ///< as asked for: "auto"
-    std::vector<std::string> notes; ///< what of the input is not drawn
+    std::string view;               ///< that it led to, as traces::make_view() takes it
+    std::vector<std::string> notes; ///< what of the input is not drawn, and what was not done as asked for
 };
 
 /// The frame after the last pass, row 0 first. With several samples to a pixel, `composite` is their mean, and

@@ -35,6 +35,7 @@ ordered_json scene_json(const Comparison& comparison) {
                          {"draws", scene.draws},
                          {"textures", scene.textures},
                          {"camera", scene.camera},
+                         {"view", scene.view},
                          {"width", comparison.width()},
                          {"height", comparison.height()},
                          {"samples", comparison.samples()},

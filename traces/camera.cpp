@@ -71,16 +71,73 @@ pipeline::View fitting_view(const Scene& scene, std::uint32_t width, std::uint32
                    width, height);
 }
 
-pipeline::View camera_view(const Camera& camera, std::uint32_t width, std::uint32_t height) {
+struct Planes {
+    double near = 0.0, far = 0.0; ///< far: 0 = infinite
+};
+
+/// Of 24 bits, how many the part of the depth range from `nearest` to `farthest` has.
+double depth_codes(const Camera& camera, Planes planes, double nearest, double farthest) {
+    constexpr double all = 1U << 24U;
+    if (camera.orthographic) return all * (farthest - nearest) / (planes.far - planes.near);
+    const double end = planes.far > 0.0 ? planes.far / (planes.far - planes.near) : 1.0;
+    return all * end * planes.near * (1.0 / nearest - 1.0 / farthest);
+}
+
+/// The camera's planes, or nearer ones where those leave the scene too few depths. The bounding sphere counts, not the
+/// box: a flat scene seen from the front is not to be stretched over all depths.
+Planes planes_of(const Scene& scene, const Camera& camera, const glm::dmat4& view, std::vector<std::string>* notes) {
+    constexpr double fewest_codes = 4096, slack = 0.01;
+    const Planes given{static_cast<double>(camera.near), static_cast<double>(camera.far)};
+    const Sphere sphere = bounding_sphere(scene);
+    const double middle = -(view * glm::dvec4(sphere.centre, 1.0)).z;
+    const double end = given.far > 0.0 ? given.far : INFINITY;
+    const double nearest = std::max(given.near, middle - sphere.radius);
+    const double farthest = std::min(end, middle + sphere.radius);
+    if (!(nearest < farthest)) return given; // nothing is seen
+    const double codes = depth_codes(camera, given, nearest, farthest);
+    if (codes >= fewest_codes) return given;
+    const double margin = slack * sphere.radius;
+    const Planes pulled{std::max({given.near, nearest - margin, camera.orthographic ? 0.0 : nearest / 2.0}),
+                        std::min(end, farthest + margin)};
+    if (notes != nullptr)
+        notes->push_back(fmt::format(
+            "the camera's near and far planes, {:g} and {}, leave the scene {} depths of 24 bits: they are moved "
+            "to {:.6g} and {:.6g}",
+            camera.near, given.far > 0.0 ? fmt::format("{:g}", camera.far) : "infinity", std::floor(codes), pulled.near,
+            pulled.far));
+    return pulled;
+}
+
+pipeline::View camera_view(const Scene& scene, const Camera& camera, std::uint32_t width, std::uint32_t height,
+                           std::vector<std::string>* notes) {
     const glm::dmat4 view = glm::inverse(glm::dmat4(camera.to_world));
     // The viewport's aspect ratio, not the camera's: pixels are square.
     const double aspect = aspect_of(width, height);
-    const double near = static_cast<double>(camera.near), far = static_cast<double>(camera.far);
+    const auto [near, far] = planes_of(scene, camera, view, notes);
     if (camera.orthographic) {
         const double y = static_cast<double>(camera.ymag), x = y * aspect;
         return view_of(view, glm::orthoRH_NO(-x, x, -y, y, near, far), width, height);
     }
     return view_of(view, perspective(static_cast<double>(camera.fovy), aspect, near, far), width, height);
+}
+
+constexpr std::size_t matrix_numbers = 32; ///< of view and projection
+
+pipeline::View matrix_view(const std::vector<double>& numbers, std::uint32_t width, std::uint32_t height) {
+    const auto matrix = [&](std::size_t first) {
+        glm::dmat4 result;
+        for (int i = 0; i < 16; ++i) result[i / 4][i % 4] = numbers[first + static_cast<std::size_t>(i)];
+        return result;
+    };
+    const glm::dmat4 view = matrix(0), projection = matrix(16);
+    const auto last_row = [](const glm::dmat4& m) { return glm::dvec4(m[0][3], m[1][3], m[2][3], m[3][3]); };
+    const glm::dvec4 affine(0, 0, 0, 1), perspective(0, 0, -1, 0);
+    const bool good = last_row(view) == affine && glm::determinant(glm::mat3(glm::mat4(view))) != 0.0F &&
+                      (last_row(projection) == affine || last_row(projection) == perspective) &&
+                      projection[0][0] * projection[1][1] != 0.0;
+    if (!good)
+        throw sim::InputError("camera: expected 32 numbers that are a view and a projection matrix, column by column");
+    return view_of(view, projection, width, height);
 }
 
 /// Depths of the bounding box along the view direction, as near and far plane that enclose what is in front of the eye.
@@ -144,19 +201,28 @@ std::optional<std::vector<double>> numbers_in(std::string_view text) {
     }
 }
 
-pipeline::View make_view(const Scene& scene, const std::string& camera, std::uint32_t width, std::uint32_t height) {
+pipeline::View make_view(const Scene& scene, const std::string& camera, std::uint32_t width, std::uint32_t height,
+                         std::vector<std::string>* notes) {
     check_size(width, height);
     if (camera == "auto") {
         if (scene.screen_space) return screen_view(scene, width, height);
         return scene.cameras.empty() ? fitting_view(scene, width, height)
-                                     : camera_view(scene.cameras[0], width, height);
+                                     : camera_view(scene, scene.cameras[0], width, height, notes);
     }
     if (!camera.empty() && camera.size() <= 9 && camera.find_first_not_of("0123456789") == std::string::npos)
-        return camera_view(numbered_camera(scene, camera), width, height);
+        return camera_view(scene, numbered_camera(scene, camera), width, height, notes);
     const auto numbers = numbers_in(camera);
     if (numbers && numbers->size() == 7) return free_view(scene, camera, *numbers, width, height);
+    if (numbers && numbers->size() == matrix_numbers) return matrix_view(*numbers, width, height);
     throw sim::InputError(
         fmt::format("camera '{}': expected auto, the number of a camera, or ex,ey,ez,tx,ty,tz,fovy", camera));
+}
+
+std::string view_text(const pipeline::View& view) {
+    std::string text;
+    for (const glm::mat4& matrix : {view.view, view.projection})
+        for (int i = 0; i < 16; ++i) text += fmt::format("{}{}", text.empty() ? "" : ",", matrix[i / 4][i % 4]);
+    return text;
 }
 
 } // namespace traces

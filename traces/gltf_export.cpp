@@ -53,6 +53,7 @@ std::vector<std::string> export_glb(const Scene& scene, const std::filesystem::p
     if (scene.screen_space)
         throw sim::InputError(
             fmt::format("{}: expected a scene in space to write as glTF, got places on the screen", scene.name));
+    scene.resources->read_textures();
     gltf::GlbFile file;
     file.json["scene"] = 0;
     file.json["scenes"][0]["nodes"] = nlohmann::ordered_json::array();

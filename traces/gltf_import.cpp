@@ -1,11 +1,13 @@
 #include "traces/gltf_import.hpp"
 
+#include "sim/check.hpp"
 #include "traces/gltf/accessors.hpp"
 #include "traces/gltf/document.hpp"
 #include "traces/gltf/geometry.hpp"
 #include "traces/gltf/materials.hpp"
 #include "traces/gltf/nodes.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace traces {
@@ -37,24 +39,38 @@ class Importer {
         for (const std::size_t node : hierarchy_.in_scene) add_node(node);
         scene_.cameras = gltf::read_cameras(document_, hierarchy_);
         scene_.lights = gltf::read_lights(document_, hierarchy_);
+        geometries_.add_notes(document_.notes);
         if (left_out_ > 0)
             document_.notes.push_back(fmt::format("{} draws of points and lines are left out", left_out_));
+        if (without_place_ > 0)
+            document_.notes.push_back(
+                fmt::format("{} draws of primitives without POSITION are left out", without_place_));
+        if (hidden_ > 0) document_.notes.push_back(fmt::format("{} nodes are not visible", hidden_));
+        const auto has_triangles = [&](const pipeline::Draw& draw) {
+            return scene_.resources->geometries[draw.geometry].triangle_count() > 0;
+        };
+        if (std::none_of(scene_.draws.begin(), scene_.draws.end(), has_triangles)) fail_empty();
     }
 
   private:
     void add_node(std::size_t index) {
         const tinygltf::Node& node = document_.model().nodes[index];
         if (node.mesh < 0) return;
+        if (hierarchy_.hidden[index]) {
+            ++hidden_;
+            return;
+        }
         const std::string place = gltf::place_of("node", index, node.name);
         const auto& mesh = document_.at(document_.model().meshes, node.mesh, place, "mesh");
         auto matrices = gltf::instances_of(document_, accessors_, index, hierarchy_.world[index]);
-        if (node.skin >= 0) matrices.assign(matrices.size(), glm::mat4(1.0F)); // skinned vertices are in world space
         for (const glm::mat4& matrix : matrices) document_.require(is_finite(matrix), place, "a finite transform");
         for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
             if (!gltf::makes_triangles(mesh.primitives[i])) {
-                document_.require(mesh.primitives[i].mode >= 0 && mesh.primitives[i].mode <= 6, place,
-                                  "primitives of mode 0 to 6, got {}", mesh.primitives[i].mode);
                 ++left_out_;
+                continue;
+            }
+            if (!mesh.primitives[i].attributes.contains("POSITION")) { // to be skipped (glTF 2.0, section 3.7.2.1)
+                ++without_place_;
                 continue;
             }
             instances_ += matrices.size();
@@ -64,8 +80,18 @@ class Importer {
             draw.geometry = geometries_.use(index, i);
             draw.material = materials_.use(mesh.primitives[i].material, place);
             draw.instances = matrices;
+            if (node.skin >= 0) draw.instances.assign(matrices.size(), geometries_.skin_to_world(draw.geometry));
             scene_.draws.push_back(std::move(draw));
         }
+    }
+
+    [[noreturn]] void fail_empty() const {
+        std::string text;
+        for (const std::string& note : document_.notes) text += "; " + note;
+        throw sim::InputError(fmt::format(
+            "{}: expected at least one triangle to draw (nodes in the scene, with primitives of mode 4 to 6, whose "
+            "attributes have a POSITION, with a count of 3 or more){}",
+            document_.name(), text));
     }
 
     gltf::Document& document_;
@@ -75,6 +101,8 @@ class Importer {
     gltf::Materials materials_;
     gltf::Geometries geometries_;
     std::size_t left_out_ = 0;
+    std::size_t without_place_ = 0;
+    std::size_t hidden_ = 0;
     std::size_t instances_ = 0;
 };
 

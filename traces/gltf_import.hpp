@@ -2,9 +2,10 @@
 //
 // Read: all primitive modes that make triangles; every index width and component type, normalised, interleaved, sparse;
 // node hierarchies; morph targets with their default weights and skins in the rest pose; base colour, its texture and
-// transform, alpha modes; cameras; KHR_lights_punctual, KHR_materials_transmission, KHR_materials_unlit,
-// KHR_mesh_quantization, KHR_texture_transform, EXT_mesh_gpu_instancing. Vertex and index data stay in the layout of
-// the file (each bufferView is a buffer), except where they have to be computed.
+// transform, alpha modes; cameras; EXT_mesh_gpu_instancing, EXT_meshopt_compression, EXT_texture_webp,
+// KHR_draco_mesh_compression, KHR_lights_punctual, KHR_materials_transmission, KHR_materials_unlit,
+// KHR_mesh_quantization, KHR_node_visibility, KHR_texture_transform. Vertex and index data stay in the layout of the
+// file (each bufferView is a buffer), except where they have to be computed.
 //
 // Not read, with a note in Scene::notes: points and lines, animations, other material properties, other optional
 // extensions. A required extension that is not in the list above is an error.

@@ -270,6 +270,7 @@ Frame PassGraph::lower() const {
     }
     const Offers offers = offers_of(frame);
     frame.needs = needs_of(frame, offers, fragment_colour_);
+    if (frame.needs.textures) frame.resources->read_textures();
     if (!frame.needs.kbuffer) {
         frame.program = nullptr;
         frame.resolve = nullptr;

@@ -59,6 +59,9 @@ struct Scene {
     /// Scene units across and down the viewport; 0 = one unit is one pixel. Only with screen_space.
     glm::vec2 screen_extent{0.0F};
 
+    /// Scalars of a field are its own divided by two to this power, so that a colour can hold them.
+    int scalar_exponent = 0;
+
     std::vector<std::string> notes; ///< what of the input is not drawn or read, one line each
 };
 

@@ -88,11 +88,21 @@ void judge(const AccuracyRequest& request, const FramePixels& pixels, const pipe
     if (request.pictures) point.picture = picture_error_picture(pixels.composite, truth, point.name());
 }
 
+// What the method did not do as asked for, besides what is known of the scene.
+void add_notes(const SceneFacts& drawn, Accuracy& accuracy) {
+    const auto knows = [](const std::vector<std::string>& notes, const std::string& note) {
+        return std::find(notes.begin(), notes.end(), note) != notes.end();
+    };
+    for (const std::string& note : drawn.notes)
+        if (!knows(accuracy.scene.notes, note) && !knows(accuracy.notes, note)) accuracy.notes.push_back(note);
+}
+
 AccuracyPoint point_of(const AccuracyRequest& request, const Knobs& knobs, const Truth& truth,
-                       const Supervision& supervision) {
+                       const Supervision& supervision, Accuracy& accuracy) {
     ComparisonRequest one = request.comparison;
     one.workload_settings.insert(one.workload_settings.end(), knobs.begin(), knobs.end());
     const Comparison comparison = compare(prepare(one, supervision), supervision);
+    add_notes(comparison.scene, accuracy);
     const pipeline::RunResult& run = comparison.runs.front();
     AccuracyPoint point;
     point.knobs = knobs;
@@ -162,7 +172,8 @@ Accuracy measure_accuracy(const AccuracyRequest& request, const Supervision& sup
         const std::uint32_t parts = light_parts(truth.plan.sampling.rays);
         accuracy.rays = parts * parts;
     }
-    for (const Knobs& knobs : points) accuracy.points.push_back(point_of(request, knobs, truth.truth, supervision));
+    for (const Knobs& knobs : points)
+        accuracy.points.push_back(point_of(request, knobs, truth.truth, supervision, accuracy));
     if (request.averaged > 0) add_averages(request, truth.truth, supervision, accuracy.points);
     mark_pareto(accuracy.points);
     return accuracy;

@@ -110,7 +110,8 @@ TruthRun run_truth(const TruthRequest& request, const Supervision& supervision) 
     traces::WorkloadOptions options;
     for (const std::string& setting : request.workload_settings) options.set(setting);
     const traces::Scene scene = traces::load_scene(request.scene);
-    const pipeline::View view = traces::make_view(scene, request.camera, request.width, request.height);
+    std::vector<std::string> notes;
+    const pipeline::View view = traces::make_view(scene, request.camera, request.width, request.height, &notes);
     TruthRun run;
     run.frame = std::make_shared<const pipeline::Frame>(traces::build_frame(scene, view, request.workload, options));
     run.plan = request.plan;
@@ -121,7 +122,7 @@ TruthRun run_truth(const TruthRequest& request, const Supervision& supervision) 
         settings_matter = false;
     }
     check_truth(*run.frame);
-    run.scene = facts_of(scene, request.camera);
+    run.scene = facts_of(scene, request.camera, *run.frame, notes);
     run.threads = request.threads == 0 ? core_count() : request.threads;
     trace_or_find(request, settings_matter ? request.workload_settings : std::vector<std::string>{}, supervision, run);
     if (request.check) check(supervision, run);

@@ -105,6 +105,7 @@ ordered_json truth_json(const TruthRun& run) {
                            {"triangles_drawn", scene.triangles_drawn},
                            {"draws", scene.draws},
                            {"camera", scene.camera},
+                           {"view", scene.view},
                            {"width", run.truth.width},
                            {"height", run.truth.height},
                            {"workload", run.frame->workload},

@@ -124,4 +124,46 @@ TEST(Cameras, ErrorsNameWhatWasExpected) {
               "resolution: expected 1 to 16384 pixels across and down, got 5x16385");
 }
 
+TEST(Cameras, PlanesThatLeaveTheSceneTooFewDepthsAreMovedWithANote) {
+    Scene scene = unit_scene();
+    traces::Camera camera;
+    camera.fovy = 1.0F;
+    camera.near = 1e-4F;
+    camera.far = 1e10F;
+    camera.to_world[3] = glm::vec4(0, 0, 5, 1);
+    scene.cameras.push_back(camera);
+    std::vector<std::string> notes;
+    const auto view = traces::make_view(scene, "auto", 100, 100, &notes);
+    ASSERT_EQ(notes.size(), 1U);
+    EXPECT_EQ(notes[0],
+              "the camera's near and far planes, 0.0001 and 1e+10, leave the scene 139 depths of 24 bits: they are "
+              "moved to 3.99 and 6.01");
+    EXPECT_GT(projected(view, {0, 0, -1}).z - projected(view, {0, 0, 1}).z, 1.9F);
+    // Just enough, a scene around the eye, and one that lies behind the far plane stay as they are.
+    for (const auto& [near, far, z] :
+         {std::tuple(0.01F, 100.0F, 5.0F), std::tuple(1e-6F, 0.0F, 0.0F), std::tuple(1e-4F, 2.0F, 9.0F)}) {
+        notes.clear();
+        scene.cameras[0].near = near;
+        scene.cameras[0].far = far;
+        scene.cameras[0].to_world[3].z = z;
+        traces::make_view(scene, "0", 100, 100, &notes);
+        EXPECT_TRUE(notes.empty()) << near << ": " << notes[0];
+    }
+    scene.cameras[0] = {"", glm::mat4(1.0F), true, 0, 0, 1, 1, 0.0F, 1e8F};
+    scene.cameras[0].to_world[3].z = 5.0F;
+    traces::make_view(scene, "0", 100, 100, &notes);
+    EXPECT_EQ(notes.size(), 1U);
+}
+
+TEST(Cameras, TheTextOfAViewLeadsToItAgain) {
+    const auto view = traces::make_view(unit_scene(), "0.1,0.2,4,0.3,0,0,33.3", 200, 100);
+    const auto again = traces::make_view(unit_scene(), traces::view_text(view), 200, 100);
+    EXPECT_EQ(again.view, view.view);
+    EXPECT_EQ(again.projection, view.projection);
+    std::string zeros = "0";
+    for (int i = 1; i < 32; ++i) zeros += ",0";
+    EXPECT_EQ(error_of(unit_scene(), zeros),
+              "camera: expected 32 numbers that are a view and a projection matrix, column by column");
+}
+
 } // namespace traces_camera_test

@@ -30,8 +30,11 @@ TEST(GltfErrors, FilesThatAreNoScenes) {
     EXPECT_EQ(error_of_bytes(""), "scene.glb: parse error at line 1, column 1: syntax error while parsing value - "
                                   "unexpected end of input; expected '[', '{', or a literal");
     EXPECT_EQ(error_of_bytes("[1, 2]"), "scene.glb: JSON: expected an object");
-    EXPECT_EQ(error_of_bytes(R"({"asset": {"version": "1.0"}})"), "scene.glb: asset.version: expected \"2.0\"");
-    EXPECT_EQ(error_of_bytes(R"({"asset": {"version": "2.0"}})"), "scene.glb: expected at least one triangle to draw");
+    EXPECT_EQ(error_of_bytes(R"({"asset": {"version": "1.0"}})"),
+              "scene.glb: asset.version: expected \"2.0\", got \"1.0\"");
+    EXPECT_EQ(error_of_bytes(R"({"asset": {"version": "2.0"}})"),
+              "scene.glb: expected at least one triangle to draw (nodes in the scene, with primitives of mode 4 to 6, "
+              "whose attributes have a POSITION, with a count of 3 or more)");
 }
 
 TEST(GltfErrors, ContainersWithWrongLengths) {
@@ -64,9 +67,12 @@ TEST(GltfErrors, RequiredExtensionsAreNamed) {
     const auto with = [](const char* name) {
         return error_after([&](GltfFile& file) { file.json["extensionsRequired"] = {name}; });
     };
-    EXPECT_EQ(with("KHR_draco_mesh_compression"),
-              "scene.gltf: extensionsRequired: expected extensions that ropsim reads, got KHR_draco_mesh_compression "
-              "(Draco-compressed geometry: convert the file without)");
+    EXPECT_EQ(
+        error_after([&](GltfFile& file) {
+            file.json["extensionsRequired"] = {"KHR_materials_volume", "KHR_texture_transform", "ACME_unheard_of"};
+        }),
+        "scene.gltf: extensionsRequired: expected extensions that ropsim reads, got KHR_materials_volume (`assimp "
+        "export FILE OUT.glb` (Debian: assimp-utils) writes a file without), ACME_unheard_of");
     EXPECT_EQ(with("ACME_unheard_of"),
               "scene.gltf: extensionsRequired: expected extensions that ropsim reads, got ACME_unheard_of");
     EXPECT_EQ(with("KHR_texture_transform"), "");
@@ -74,23 +80,25 @@ TEST(GltfErrors, RequiredExtensionsAreNamed) {
 
 TEST(GltfErrors, AccessorsBeyondTheirData) {
     EXPECT_EQ(error_after([](GltfFile& file) { file.json["accessors"][0]["count"] = 4; }),
-              "scene.gltf: mesh 0 primitive 0 POSITION: expected 4 elements of 12 bytes, 12 apart, from byte 0 within "
-              "bufferView 0 of 36 bytes");
+              "scene.gltf: mesh 0 primitive 0 POSITION: expected a count of 4 elements of 12 bytes, 12 apart, from "
+              "byteOffset 0 within "
+              "bufferView 0 of byteLength 36");
     EXPECT_EQ(error_after([](GltfFile& file) { file.json["accessors"][0]["byteOffset"] = 40; }),
-              "scene.gltf: mesh 0 primitive 0 POSITION: expected 3 elements of 12 bytes, 12 apart, from byte 40 within "
-              "bufferView 0 of 36 bytes");
+              "scene.gltf: mesh 0 primitive 0 POSITION: expected a count of 3 elements of 12 bytes, 12 apart, from "
+              "byteOffset 40 within "
+              "bufferView 0 of byteLength 36");
     EXPECT_EQ(error_after([](GltfFile& file) { file.json["bufferViews"][0]["byteLength"] = 48; }),
-              "scene.gltf: bufferView 0: expected 48 bytes from byte 0 within buffer 0 of 36 bytes");
+              "scene.gltf: bufferViews[0]: expected byteLength 48 from byteOffset 0 within buffer 0 of 36 bytes");
     EXPECT_EQ(error_after([](GltfFile& file) { file.json["bufferViews"][0]["byteStride"] = 4; }),
               "scene.gltf: mesh 0 primitive 0 POSITION: expected a byteStride of 12 to 252 in bufferView 0, got 4");
     EXPECT_EQ(error_after([](GltfFile& file) { file.json["bufferViews"][0]["buffer"] = 7; }),
-              "scene.gltf: bufferView 0: expected the number of one of 1 buffers, got 7");
+              "scene.gltf: bufferViews[0].buffer: expected the number of one of 1 buffers, got 7");
     EXPECT_EQ(error_after([](GltfFile& file) { file.json["accessors"][0]["bufferView"] = 9; }),
-              "scene.gltf: mesh 0 primitive 0 POSITION: expected the number of one of 1 bufferViews, got 9");
-    EXPECT_EQ(
-        error_after([](GltfFile& file) { file.json["accessors"][0]["count"] = 2000000000; }),
-        "scene.gltf: mesh 0 primitive 0 POSITION: expected 2000000000 elements of 12 bytes, 12 apart, from byte 0 "
-        "within bufferView 0 of 36 bytes");
+              "scene.gltf: accessors[0].bufferView: expected the number of one of 1 bufferViews, got 9");
+    EXPECT_EQ(error_after([](GltfFile& file) { file.json["accessors"][0]["count"] = 2000000000; }),
+              "scene.gltf: mesh 0 primitive 0 POSITION: expected a count of 2000000000 elements of 12 bytes, 12 apart, "
+              "from byteOffset 0 "
+              "within bufferView 0 of byteLength 36");
     EXPECT_EQ(
         error_after([](GltfFile& file) {
             file.json["accessors"][0].erase("bufferView");
@@ -103,15 +111,15 @@ TEST(GltfErrors, AccessorsOfTheWrongType) {
     EXPECT_EQ(error_after([](GltfFile& file) { file.json["accessors"][0]["type"] = "VEC2"; }),
               "scene.gltf: mesh 0 primitive 0 POSITION: expected 3 components, got 2");
     EXPECT_EQ(error_after([](GltfFile& file) { file.json["accessors"][0]["componentType"] = 5130; }),
-              "scene.gltf: mesh 0 primitive 0 POSITION: expected a component type of glTF 2.0, got 5130");
+              "scene.gltf: accessors[0].componentType: expected one of 5120, 5121, 5122, 5123, 5125, 5126, got 5130");
     EXPECT_EQ(error_after([](GltfFile& file) { file.json["accessors"][0]["count"] = "three"; }),
-              "scene.gltf: accessors[0].count: expected a natural number below 2^31, got \"three\"");
+              "scene.gltf: accessors[0].count: expected a whole number from 1 to 2147483647, got \"three\"");
     EXPECT_EQ(error_after([](GltfFile& file) { file.json["accessors"][0]["count"] = -3; }),
-              "scene.gltf: accessors[0].count: expected a natural number below 2^31, got -3");
+              "scene.gltf: accessors[0].count: expected a whole number from 1 to 2147483647, got -3");
     EXPECT_EQ(error_after([](GltfFile& file) { file.json["nodes"] = json::object(); }),
-              "scene.gltf: nodes: expected a list");
+              "scene.gltf: nodes: expected a list, got {}");
     EXPECT_EQ(error_after([](GltfFile& file) { file.json["nodes"] = {1}; }),
-              "scene.gltf: nodes[0]: expected an object");
+              "scene.gltf: nodes[0]: expected an object, got 1");
 }
 
 TEST(GltfErrors, AttributesOfDifferentLength) {
@@ -119,7 +127,7 @@ TEST(GltfErrors, AttributesOfDifferentLength) {
                   const int normals = file.add({0, 0, 1, 0, 0, 1}, "VEC3");
                   file.json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = normals;
               }),
-              "scene.gltf: mesh 0 primitive 0 NORMAL: expected 3 elements like POSITION, got 2");
+              "scene.gltf: mesh 0 primitive 0 NORMAL: expected a count of 3 like POSITION, got 2");
 }
 
 TEST(GltfErrors, IndicesOutOfRange) {
@@ -130,11 +138,11 @@ TEST(GltfErrors, IndicesOutOfRange) {
               "scene.gltf: geometry 0 \"mesh 0 primitive 0\": expected index 2 below the vertex count 3, not 3");
     EXPECT_EQ(
         error_after([](GltfFile& file) { file.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 5; }),
-        "scene.gltf: mesh 0: expected the number of one of 1 accessors, got 5");
+        "scene.gltf: meshes[0].primitives[0].attributes.POSITION: expected the number of one of 1 accessors, got 5");
     EXPECT_EQ(error_after([](GltfFile& file) { file.json["nodes"][0]["mesh"] = 1; }),
-              "scene.gltf: node 0: expected the number of one of 1 meshs, got 1");
+              "scene.gltf: nodes[0].mesh: expected the number of one of 1 meshes, got 1");
     EXPECT_EQ(error_after([](GltfFile& file) { file.json["meshes"][0]["primitives"][0]["material"] = 0; }),
-              "scene.gltf: node 0: expected the number of one of 0 materials, got 0");
+              "scene.gltf: meshes[0].primitives[0].material: expected the number of one of 0 materials, got 0");
     EXPECT_EQ(error_after([](GltfFile& file) {
                   const int indices = file.add({0, 1, 2}, "SCALAR");
                   file.json["meshes"][0]["primitives"][0]["indices"] = indices;
@@ -155,7 +163,7 @@ TEST(GltfErrors, PositionsThatAreNoNumbers) {
     EXPECT_EQ(error_after([](GltfFile& file) {
                   file.json["nodes"][0]["scale"] = {1e39, 1, 1};
               }),
-              "scene.gltf: node 0: expected a finite transform");
+              "scene.gltf: nodes[0].scale[0]: expected a finite number, got 1e+39");
     EXPECT_EQ(error_after([](GltfFile& file) {
                   file.json["nodes"][0]["scale"] = {3e38, 1, 1};
                   file.json["nodes"][0]["translation"] = {3e38, 0, 0};
@@ -164,7 +172,7 @@ TEST(GltfErrors, PositionsThatAreNoNumbers) {
     EXPECT_EQ(error_after([](GltfFile& file) {
                   file.json["nodes"][0]["rotation"] = {0, 1};
               }),
-              "scene.gltf: node 0: expected a matrix of 16 finite numbers, or translation 3, rotation 4, scale 3");
+              "scene.gltf: nodes[0].rotation: expected a list of 4, got [0,1]");
 }
 
 TEST(GltfErrors, ColoursThatAreNoNumbers) {
@@ -174,35 +182,36 @@ TEST(GltfErrors, ColoursThatAreNoNumbers) {
         file.json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = 1;
         EXPECT_EQ(file.error(), "scene.gltf: mesh 0 primitive 0: colour 2: expected finite numbers");
     }
-    EXPECT_EQ(error_after([](GltfFile& file) {
-                  file.json["materials"] = {
-                      {{"name", "m"}, {"pbrMetallicRoughness", {{"baseColorFactor", {1e39, 0, 0, 1}}}}}};
-                  file.json["meshes"][0]["primitives"][0]["material"] = 0;
-              }),
-              "scene.gltf: material 0 \"m\": expected finite numbers");
+    EXPECT_EQ(
+        error_after([](GltfFile& file) {
+            file.json["materials"] = {
+                {{"name", "m"}, {"pbrMetallicRoughness", {{"baseColorFactor", {1e39, 0, 0, 1}}}}}};
+            file.json["meshes"][0]["primitives"][0]["material"] = 0;
+        }),
+        "scene.gltf: materials[0].pbrMetallicRoughness.baseColorFactor[0]: expected a number from 0 to 1, got 1e+39");
 }
 
 TEST(GltfErrors, NodesThatAreNoForest) {
     EXPECT_EQ(
         error_after([](GltfFile& file) { file.json["nodes"] = json::parse(R"([{"mesh": 0, "children": [0]}])"); }),
-        "scene.gltf: node 0: expected no cycle of nodes");
+        "scene.gltf: nodes[0].children: expected no cycle of nodes");
     EXPECT_EQ(error_after([](GltfFile& file) {
                   file.json["nodes"] =
                       json::parse(R"([{"children": [1]}, {"children": [2]}, {"mesh": 0, "children": [1]}])");
               }),
-              "scene.gltf: node 1: expected one parent, got two");
+              "scene.gltf: nodes[2].children[0]: expected a node that is nobody else's child, got 1");
     EXPECT_EQ(error_after([](GltfFile& file) { file.json["nodes"][0]["children"] = {4}; }),
-              "scene.gltf: node 0: expected the number of one of 1 childs, got 4");
+              "scene.gltf: nodes[0].children[0]: expected the number of one of 1 nodes, got 4");
     EXPECT_EQ(error_after([](GltfFile& file) {
                   file.json["scenes"][0]["nodes"] = {0, 0};
               }),
-              "scene.gltf: node 0: expected to be in the scene once");
+              "scene.gltf: scenes[0].nodes[1]: expected nothing twice, got 0");
     EXPECT_EQ(error_after([](GltfFile& file) {
                   file.json["nodes"] = json::array();
-                  for (int i = 0; i < 2000; ++i) file.json["nodes"].push_back({{"children", {i + 1}}});
+                  for (int i = 0; i < 20000; ++i) file.json["nodes"].push_back({{"children", {i + 1}}});
                   file.json["nodes"].push_back({{"mesh", 0}});
               }),
-              "scene.gltf: node 1000: expected at most 1000 levels of nodes");
+              "");
 }
 
 TEST(GltfErrors, DeeplyNestedJsonIsRefused) {
@@ -214,7 +223,7 @@ TEST(GltfErrors, DeeplyNestedJsonIsRefused) {
 TEST(GltfErrors, FilesThatAreMissing) {
     GltfFile file = triangle_file();
     file.json["buffers"] = json::parse(R"([{"byteLength": 36, "uri": "gone.bin"}])");
-    EXPECT_EQ(file.error(), "scene.gltf: expected valid glTF 2.0: File not found : gone.bin");
+    EXPECT_EQ(file.error(), "scene.gltf: buffers[0].uri: expected a readable file or base64 data, got 'gone.bin'");
 
     file = triangle_file();
     file.json["images"] = {{{"uri", "gone.png"}}};
@@ -222,9 +231,10 @@ TEST(GltfErrors, FilesThatAreMissing) {
     file.json["materials"] = json::parse(R"([{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}])");
     EXPECT_EQ(file.error(), ""); // no draw uses it
     file.json["meshes"][0]["primitives"][0]["material"] = 0;
-    EXPECT_EQ(file.error(), "scene.gltf: image 0: expected a readable file 'gone.png'");
+    EXPECT_EQ(file.error(),
+              "scene.gltf: images[0]: expected a uri of a readable file, or base64 data in it, got 'gone.png'");
     file.json["images"] = {{{"uri", "data:image/png;base64,AAAA"}}};
-    EXPECT_EQ(file.error(), "scene.gltf: image 0: expected PNG or JPEG data");
+    EXPECT_EQ(file.error(), "scene.gltf: images[0]: expected PNG, JPEG or WebP data");
 }
 
 TEST(GltfErrors, HugeImagesAreRefusedBeforeTheyAreDecoded) {
@@ -235,10 +245,11 @@ TEST(GltfErrors, HugeImagesAreRefusedBeforeTheyAreDecoded) {
     file.json["textures"] = json::parse(R"([{"source": 0}])");
     file.json["materials"] = json::parse(R"([{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}])");
     file.json["meshes"][0]["primitives"][0]["material"] = 0;
-    EXPECT_EQ(file.error(), "scene.gltf: image 0: expected at most 16384x16384 texels, got 65536x65536");
+    EXPECT_EQ(file.error(), "scene.gltf: images[0]: expected at most 16384x16384 texels, got 65536x65536");
     file.json["bufferViews"][static_cast<std::size_t>(view)]["byteOffset"] = 2000000000;
-    EXPECT_EQ(file.error(),
-              "scene.gltf: bufferView 1: expected 29 bytes from byte 2000000000 within buffer 0 of 65 bytes");
+    EXPECT_EQ(
+        file.error(),
+        "scene.gltf: bufferViews[1]: expected byteLength 29 from byteOffset 2000000000 within buffer 0 of 65 bytes");
 }
 
 TEST(GltfErrors, SparseElementsOutOfRange) {
@@ -253,9 +264,10 @@ TEST(GltfErrors, SparseElementsOutOfRange) {
     };
     EXPECT_EQ(sparse(1, 2), "");
     EXPECT_EQ(sparse(1, 3), "scene.gltf: mesh 0 primitive 0 POSITION sparse: expected indices below 3, got 3");
-    EXPECT_EQ(sparse(2, 0), "scene.gltf: mesh 0 primitive 0 POSITION sparse: expected 2 elements of 2 bytes, 2 apart, "
-                            "from byte 0 within bufferView 1 of 2 bytes");
-    EXPECT_EQ(sparse(9, 0), "scene.gltf: mesh 0 primitive 0 POSITION sparse: expected 1 to 3 elements, got 9");
+    EXPECT_EQ(sparse(2, 0),
+              "scene.gltf: mesh 0 primitive 0 POSITION sparse: expected a count of 2 elements of 2 bytes, 2 apart, "
+              "from byteOffset 0 within bufferView 1 of byteLength 2");
+    EXPECT_EQ(sparse(9, 0), "scene.gltf: mesh 0 primitive 0 POSITION sparse: expected a count from 1 to 3, got 9");
 }
 
 TEST(GltfErrors, SmallFilesCannotAskForEndlessInstances) {

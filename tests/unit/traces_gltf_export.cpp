@@ -148,6 +148,7 @@ TEST(GltfExport, MaterialsTexturesCamerasAndLightsComeBack) {
     for (int column = 0; column < 3; ++column)
         for (int row = 0; row < 3; ++row)
             EXPECT_NEAR(read.uv_transform[column][row], material.uv_transform[column][row], 1e-6F);
+    after.resources->read_textures();
     const pipeline::Texture& image = after.resources->textures.at(0);
     EXPECT_EQ(image.levels.at(0).rgba, level.rgba);
     EXPECT_EQ(image.wrap_u, pipeline::Wrap::repeat);

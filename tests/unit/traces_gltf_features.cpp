@@ -280,6 +280,10 @@ TEST(GltfImport, TexturesComeWithMipsAndTheirSampler) {
     ASSERT_EQ(scene.resources->textures.size(), 1U);
     const pipeline::Texture& texture = scene.resources->textures[0];
     ASSERT_EQ(texture.levels.size(), 2U);
+    EXPECT_TRUE(texture.levels[0].rgba.empty()); // nobody has read it yet
+    const std::uint64_t address = texture.levels[1].address;
+    scene.resources->read_textures();
+    EXPECT_EQ(texture.levels[1].address, address);
     EXPECT_EQ(texture.levels[0].rgba, (std::vector<std::uint8_t>{255, 0, 0, 255, 0, 255, 0, 255, //
                                                                  0, 0, 255, 255, 255, 255, 255, 0}));
     EXPECT_EQ(texture.wrap_u, pipeline::Wrap::clamp);

@@ -125,6 +125,48 @@ TEST(Vtk, CellsOfVersionFiveAndFieldsAreRead) {
     EXPECT_EQ(scalar_at(scene, 4), 9.0F);
 }
 
+TEST(Vtk, WhatOtherProgramsWriteIsReadOrSkipped) {
+    const Scene scene = load(
+        "mesh.vtk",
+        "# vtk DataFile Version 5.1\ntitle\nASCII\nDATASET UNSTRUCTURED_GRID\nFIELD FieldData 2\nTIME 1 1 double\n0\n"
+        "names 1 2 string\none two\nthree\n" +
+            points +
+            "CELLS 3 8\nOFFSETS vtktypeint32\n0 4 8\nCONNECTIVITY vtktypeint32\n0 1 2 3 1 2 3 4\nCELL_TYPES 2\n10\n10\n"
+            "CELL_DATA 2\nGLOBAL_IDS ids vtkIdType\n0 1\nPOINT_DATA 5\nCOLOR_SCALARS rgb 2\n0 1 0 1 0 1 0 1 0 nan\n"
+            "TEXTURE_COORDINATES uv 2 float\n0 0 0 0 0 0 0 0 0 0\nTENSORS6 t float\n"
+            "1 2 3 4 5 6 1 2 3 4 5 6 1 2 3 4 5 6 1 2 3 4 5 6 1 2 3 4 5 6\nNORMALS n float\n0 0 1 0 0 1 0 0 1 0 0 1 0 0 "
+            "1\nSCALARS s Float\nLOOKUP_TABLE default\n"
+            "+0.5 1E+1 -2e-400 .25 1.\n");
+    EXPECT_EQ(scene.triangles, 7U);
+    EXPECT_EQ(scalar_at(scene, 0), 0.5F);
+    EXPECT_EQ(scalar_at(scene, 1), 10.0F);
+    EXPECT_EQ(scalar_at(scene, 2), 0.0F);
+    EXPECT_EQ(scalar_at(scene, 4), 1.0F);
+    EXPECT_NE(vtk_error(header + points + cells + "POINT_DATA 5\nSCALARS s float\nLOOKUP_TABLE d\n+-1 1 1 1 1\n"), "");
+}
+
+TEST(Vtk, BinaryBitsColoursAndStringsAreSteppedOver) {
+    std::string bytes = "# vtk DataFile Version 5.1\ntitle\nBINARY\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n";
+    append<float>(bytes, {0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 3}, true);
+    bytes += "\nMETADATA\nINFORMATION 0\n\nCELLS 2 4\nOFFSETS vtktypeint64\n";
+    append<std::int64_t>(bytes, {0, 4}, true);
+    bytes += "\nCONNECTIVITY vtktypeint32\n";
+    append<std::int32_t>(bytes, {0, 1, 2, 3}, true);
+    bytes += "\nCELL_TYPES 1\n";
+    append<std::int32_t>(bytes, {10}, true);
+    bytes += "\nPOINT_DATA 4\nCOLOR_SCALARS rgb 3\n" + std::string(12, '\xff');
+    bytes += "\nEDGE_FLAGS e bit\n" + std::string(1, '\x55');
+    bytes += "\nFIELD f 1\nnames 1 2 string\n\xc1"
+             "a"
+             "\x80\x02"
+             "bc";
+    bytes += "\nSCALARS s vtktypefloat64 1\nLOOKUP_TABLE default\n";
+    append<double>(bytes, {1, 2, 3, 4}, true);
+    const Scene scene = load("mesh.vtk", bytes);
+    EXPECT_EQ(scene.triangles, 4U);
+    EXPECT_EQ(scalar_at(scene, 3), 4.0F);
+}
+
 TEST(Vtk, CellsThatAreNoTetrahedraAreLeftOutWithANote) {
     const Scene scene =
         load("mesh.vtk", header + points + "CELLS 2 9\n4 0 1 2 3\n3 1 2 3\nCELL_TYPES 2\n10 5\n" + scalars);

@@ -56,11 +56,17 @@ bool is_unsigned_integer(ComponentType type) {
 
 void Accessors::require_inside(const Elements& elements, std::size_t bytes_each, std::string_view place) const {
     const VertexAttribute& a = elements.attribute;
+    const std::uint64_t start = document_.model().bufferViews.at(a.buffer).byteOffset + a.offset;
+    const std::uint32_t unit = pipeline::element_bytes(a.type, 1);
+    document_.require(start % unit == 0, place,
+                      "a byteOffset of accessor and bufferView together that is a multiple of {}, got {}", unit, start);
     const std::size_t bytes = document_.view_bytes(static_cast<int>(a.buffer), place).size();
     const bool fits = a.offset <= bytes && bytes_each <= bytes - a.offset &&
                       (bytes - a.offset - bytes_each) / a.stride >= elements.count - 1;
-    document_.require(fits, place, "{} elements of {} bytes, {} apart, from byte {} within bufferView {} of {} bytes",
-                      elements.count, bytes_each, a.stride, a.offset, a.buffer, bytes);
+    document_.require(
+        fits, place,
+        "a count of {} elements of {} bytes, {} apart, from byteOffset {} within bufferView {} of byteLength {}",
+        elements.count, bytes_each, a.stride, a.offset, a.buffer, bytes);
 }
 
 Accessors::Elements Accessors::elements(int index, const Wanted& wanted, std::string_view place) const {
@@ -79,7 +85,7 @@ Accessors::Elements Accessors::elements(int index, const Wanted& wanted, std::st
     result.count = accessor.count;
     result.attribute.type = *type;
     result.attribute.components = wanted.matrix ? std::uint8_t{4} : components; // a matrix is read column by column
-    result.attribute.normalized = accessor.normalized;
+    result.attribute.normalized = accessor.normalized || (wanted.normalized && type != ComponentType::f32);
     if (accessor.bufferView < 0) {
         document_.require(accessor.count <= most_zeros, place, "at most {} elements without data, got {}", most_zeros,
                           accessor.count);
@@ -136,9 +142,9 @@ void Accessors::overlay(std::vector<glm::vec4>& values, const tinygltf::Accessor
     document_.require(type.has_value() && is_unsigned_integer(*type), where, "indices of an unsigned type, got {}",
                       sparse.indices.componentType);
     // Indices pass through floats, which are exact up to 2^24.
-    document_.require(values.size() <= most_zeros, where, "at most {} elements, got {}", most_zeros, values.size());
+    document_.require(values.size() <= most_zeros, where, "a count of at most {}, got {}", most_zeros, values.size());
     document_.require(sparse.count >= 1 && static_cast<std::size_t>(sparse.count) <= values.size(), where,
-                      "1 to {} elements, got {}", values.size(), sparse.count);
+                      "a count from 1 to {}, got {}", values.size(), sparse.count);
     const auto part = [&](int view, int offset, VertexAttribute attribute) {
         document_.require(view >= 0 && offset >= 0, where, "a bufferView and an offset of at least 0");
         attribute.buffer = static_cast<std::uint32_t>(view);

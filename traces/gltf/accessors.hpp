@@ -17,7 +17,8 @@ namespace traces::gltf {
 /// What an accessor must be to serve for something.
 struct Wanted {
     std::uint8_t least_components = 1, most_components = 4;
-    bool matrix = false; ///< 4x4 instead of components
+    bool matrix = false;     ///< 4x4 instead of components
+    bool normalized = false; ///< integers are, whether the accessor says so or not
 
     std::string components_text() const {
         return least_components == most_components ? fmt::format("{}", least_components)

@@ -1,127 +1,120 @@
 #include "traces/gltf/document.hpp"
 
 #include "sim/check.hpp"
+#include "traces/gltf/decompress.hpp"
+#include "traces/gltf/file_data.hpp"
 #include "traces/gltf/json_check.hpp"
-#include "traces/hash.hpp"
-
-#include <algorithm>
-#include <cstring>
-#include <fstream>
-#include <iterator>
-#include <optional>
-#include <span>
+#include "traces/gltf/property_check.hpp"
 
 namespace traces::gltf {
 
+using nlohmann::json;
+using namespace nlohmann::literals;
+
 namespace {
 
-using Bytes = std::vector<unsigned char>;
-
-constexpr std::uint64_t largest_file = 1ULL << 31U;
-
-std::optional<Bytes> read_file(const std::filesystem::path& path) {
-    std::error_code error;
-    if (!std::filesystem::is_regular_file(path, error)) return std::nullopt;
-    const std::uint64_t size = std::filesystem::file_size(path, error);
-    if (error || size > largest_file) return std::nullopt;
-    std::ifstream file(path, std::ios::binary);
-    Bytes bytes(size);
-    file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
-    if (!file || static_cast<std::uint64_t>(file.gcount()) != size) return std::nullopt;
-    return bytes;
-}
-
-std::uint32_t u32_at(const Bytes& bytes, std::size_t offset) {
-    std::uint32_t value = 0;
-    std::memcpy(&value, bytes.data() + offset, sizeof value);
+/// Moves a property out of an object; null when it has none.
+json take(json& owner, const char* key) {
+    const auto found = owner.find(key);
+    if (found == owner.end()) return nullptr;
+    json value = std::move(*found);
+    owner.erase(found);
     return value;
 }
 
-/// The JSON in a .glb container (glTF 2.0, section 4.4), after checking that no length leads out of the file.
-std::string_view json_in_container(const std::string& name, const Bytes& bytes) {
-    const auto fail = [&](std::string_view place, const std::string& expected) {
-        throw sim::InputError(fmt::format("{}: {}: expected {}", name, place, expected));
-    };
-    if (bytes.size() < 20) fail("header", fmt::format("at least 20 bytes, got {}", bytes.size()));
-    if (u32_at(bytes, 4) != 2) fail("header", fmt::format("version 2, got {}", u32_at(bytes, 4)));
-    const std::size_t length = u32_at(bytes, 8);
-    if (length > bytes.size())
-        fail("header", fmt::format("a file of {} bytes, got {}: it is cut off", length, bytes.size()));
-    for (std::size_t offset = 12; offset < length;) {
-        if (length - offset < 8) fail(fmt::format("byte {}", offset), "a chunk header of 8 bytes");
-        const std::size_t chunk = u32_at(bytes, offset);
-        if (chunk > length - offset - 8)
-            fail(fmt::format("chunk at byte {}", offset),
-                 fmt::format("at most {} bytes, got {}", length - offset - 8, chunk));
-        offset += 8 + chunk;
+// What tinygltf refuses or reads in its own way, taken out of the JSON before and put into the model afterwards:
+// buffers longer than their byteLength, images, skins without inverse bind matrices, indices without a bufferView
+// (sparse).
+class SetAside {
+  public:
+    explicit SetAside(json& root)
+        : buffers_(take(root, "buffers")), images_(take(root, "images")), skins_(take(root, "skins")) {
+        if (const auto meshes = root.find("meshes"); meshes != root.end())
+            for (json& mesh : *meshes)
+                for (json& primitive : mesh["primitives"]) {
+                    indices_.push_back(primitive.value("indices", -1));
+                    primitive.erase("indices");
+                }
     }
-    if (std::memcmp(bytes.data() + 16, "JSON", 4) != 0) fail("chunk at byte 12", "type JSON");
-    return {reinterpret_cast<const char*>(bytes.data()) + 20, u32_at(bytes, 12)};
-}
 
-// tinygltf's view of the file system: only regular files of bounded size, all of them hashed as they are read.
-struct Files {
-    ContentHash hash;
+    void put_back(const Document& document, tinygltf::Model& model, FileData& files, const Parts& parts) const {
+        for (std::size_t i = 0; i < buffers_.size(); ++i)
+            model.buffers.push_back(buffer_of(document, buffers_[i], i, files, parts));
+        for (const json& image : images_) model.images.push_back(image_of(image, files));
+        for (const json& skin : skins_) model.skins.push_back(skin_of(skin));
+        std::size_t next = 0;
+        for (tinygltf::Mesh& mesh : model.meshes)
+            for (tinygltf::Primitive& primitive : mesh.primitives) primitive.indices = indices_.at(next++);
+    }
+
+  private:
+    static tinygltf::Buffer buffer_of(const Document& document, const json& source, std::size_t index, FileData& files,
+                                      const Parts& parts) {
+        tinygltf::Buffer buffer;
+        const auto length = source.at("byteLength").get<std::size_t>();
+        const std::string place = fmt::format("buffers[{}]", index);
+        if (const auto uri = source.find("uri"); uri != source.end()) {
+            std::optional<Bytes> bytes = files.at(uri->get_ref<const std::string&>());
+            document.require(bytes.has_value(), place + ".uri", "a readable file or base64 data, got '{}'",
+                             short_uri(uri->get_ref<const std::string&>()));
+            buffer.data = std::move(*bytes);
+        } else if (source.contains("/extensions/EXT_meshopt_compression"_json_pointer)) {
+            return buffer; // its bufferViews are decoded from another one
+        } else {
+            document.require(index == 0 && parts.binary.has_value(), place + ".uri",
+                             "a file, as there is no binary chunk for this buffer");
+            buffer.data.assign(parts.binary->begin(), parts.binary->end());
+        }
+        document.require(length <= buffer.data.size(), place + ".byteLength",
+                         "at most {}, the bytes that are there, got {}", buffer.data.size(), length);
+        buffer.data.resize(length);
+        return buffer;
+    }
+
+    // Images stay encoded until a picture needs them; those in a bufferView stay there. What cannot be read is an error
+    // only where it is needed.
+    static tinygltf::Image image_of(const json& source, FileData& files) {
+        tinygltf::Image image;
+        image.as_is = true;
+        image.name = source.value("name", std::string());
+        image.bufferView = source.value("bufferView", -1);
+        image.uri = source.value("uri", std::string());
+        if (image.bufferView >= 0 || image.uri.empty()) return image;
+        if (std::optional<Bytes> bytes = files.at(image.uri)) image.image = std::move(*bytes);
+        image.uri = short_uri(image.uri);
+        return image;
+    }
+
+    static tinygltf::Skin skin_of(const json& source) {
+        tinygltf::Skin skin;
+        skin.name = source.value("name", std::string());
+        skin.inverseBindMatrices = source.value("inverseBindMatrices", -1);
+        skin.joints = source.at("joints").get<std::vector<int>>();
+        return skin;
+    }
+
+    json buffers_, images_, skins_;
+    std::vector<int> indices_; ///< of all primitives of all meshes
 };
 
-bool file_exists(const std::string& path, void*) {
-    std::error_code error;
-    return std::filesystem::is_regular_file(path, error);
-}
-
-std::string same_path(const std::string& path, void*) { return path; }
-
-bool read_whole_file(Bytes* out, std::string* error, const std::string& path, void* files) {
-    std::optional<Bytes> bytes = read_file(path);
-    if (!bytes) {
-        if (error != nullptr) *error += "cannot be read: " + path;
-        return false;
-    }
-    static_cast<Files*>(files)->hash.add(std::as_bytes(std::span(*bytes)));
-    *out = std::move(*bytes);
-    return true;
-}
-
-// Images are decoded when a material asks for them. Those in a bufferView stay there: tinygltf does not check that the
-// view lies in its buffer before it gets here.
-bool keep_encoded(tinygltf::Image* image, const int, std::string*, std::string*, int, int, const unsigned char* bytes,
-                  int size, void*) {
-    image->as_is = true;
-    if (image->bufferView < 0) image->image.assign(bytes, bytes + size);
-    return true;
-}
-
-std::string first_line(std::string text) {
-    text = text.substr(0, text.find('\n'));
-    for (char& c : text)
-        if (static_cast<unsigned char>(c) < ' ') c = ' ';
-    if (text.size() > 200) text.resize(200);
-    return text;
-}
-
-tinygltf::Model parsed(const std::string& name, const std::filesystem::path& path, const Bytes& bytes, bool binary,
-                       Files& files) {
+tinygltf::Model parsed(const std::string& name, const json& root) {
     tinygltf::TinyGLTF loader;
-    loader.SetFsCallbacks({file_exists, same_path, read_whole_file, nullptr, &files});
-    loader.SetImageLoader(keep_encoded, nullptr);
     tinygltf::Model model;
     std::string error, warning;
-    const auto size = static_cast<unsigned>(bytes.size());
-    const std::string folder = path.parent_path().empty() ? "." : path.parent_path().string();
+    const std::string text = root.dump();
     bool good = false;
     try {
-        good = binary ? loader.LoadBinaryFromMemory(&model, &error, &warning, bytes.data(), size, folder)
-                      : loader.LoadASCIIFromString(&model, &error, &warning,
-                                                   reinterpret_cast<const char*>(bytes.data()), size, folder);
+        good =
+            loader.LoadASCIIFromString(&model, &error, &warning, text.data(), static_cast<unsigned>(text.size()), "");
     } catch (const std::exception& exception) {
         error = exception.what();
         good = false;
     }
     // A property that was passed over is an error, too.
-    if (!good || !error.empty())
-        throw sim::InputError(
-            fmt::format("{}: expected valid glTF 2.0: {}", name, first_line(error.empty() ? warning : error)));
-    return model;
+    if (good && error.empty()) return model;
+    if (error.empty()) error = warning;
+    throw sim::InputError(
+        fmt::format("{}: expected valid glTF 2.0: {}", name, one_line(error.substr(0, error.find('\n')))));
 }
 
 } // namespace
@@ -129,14 +122,16 @@ tinygltf::Model parsed(const std::string& name, const std::filesystem::path& pat
 Document::Document(const std::filesystem::path& path) : name_(path.string()) {
     const std::optional<Bytes> bytes = read_file(path);
     if (!bytes) throw sim::InputError(fmt::format("{}: expected a readable file of at most 2 GiB", name_));
-    Files files;
-    files.hash.add(std::as_bytes(std::span(*bytes)));
-    const bool binary = bytes->size() >= 4 && std::memcmp(bytes->data(), "glTF", 4) == 0;
-    check_json(name_, binary ? json_in_container(name_, *bytes)
-                             : std::string_view(reinterpret_cast<const char*>(bytes->data()), bytes->size()));
-    model_ = parsed(name_, path, *bytes, binary, files);
-    hash_ = files.hash.hex();
-    note_unread_extensions();
+    ContentHash hash;
+    hash.add(std::as_bytes(std::span(*bytes)));
+    const Parts parts = parts_of(name_, *bytes);
+    json root = checked_json(name_, parts.json, notes);
+    const SetAside set_aside(root);
+    model_ = parsed(name_, root);
+    FileData files(path, hash);
+    set_aside.put_back(*this, model_, files, parts);
+    decompress(*this, model_);
+    hash_ = hash.hex();
 }
 
 void Document::fail(std::string_view place, std::string_view expected) const {
@@ -145,25 +140,16 @@ void Document::fail(std::string_view place, std::string_view expected) const {
 
 std::span<const unsigned char> Document::view_bytes(int view, std::string_view place) const {
     const auto& one = at(model_.bufferViews, view, place, "bufferView");
-    const std::string where = fmt::format("bufferView {}", view);
+    const std::string where = fmt::format("bufferViews[{}]", view);
     const auto& buffer = at(model_.buffers, one.buffer, where, "buffer");
     require(one.byteLength <= buffer.data.size() && one.byteOffset <= buffer.data.size() - one.byteLength, where,
-            "{} bytes from byte {} within buffer {} of {} bytes", one.byteLength, one.byteOffset, one.buffer,
+            "byteLength {} from byteOffset {} within buffer {} of {} bytes", one.byteLength, one.byteOffset, one.buffer,
             buffer.data.size());
     return std::span(buffer.data).subspan(one.byteOffset, one.byteLength);
 }
 
-void Document::note_unread_extensions() {
-    for (const std::string& extension : model_.extensionsUsed)
-        if (!is_read_extension(extension)) notes.push_back(fmt::format("extension {} is not read", extension));
-    if (!model_.animations.empty())
-        notes.push_back(
-            fmt::format("animations ({}) are not played: the scene is in its rest pose", model_.animations.size()));
-}
-
 std::string place_of(std::string_view kind, std::size_t index, const std::string& name) {
-    return name.empty() ? fmt::format("{} {}", kind, index)
-                        : fmt::format("{} {} \"{}\"", kind, index, first_line(name));
+    return name.empty() ? fmt::format("{} {}", kind, index) : fmt::format("{} {} \"{}\"", kind, index, one_line(name));
 }
 
 } // namespace traces::gltf

@@ -46,8 +46,6 @@ class Document {
     std::span<const unsigned char> view_bytes(int view, std::string_view place) const;
 
   private:
-    void note_unread_extensions();
-
     std::string name_;
     std::string hash_;
     tinygltf::Model model_;

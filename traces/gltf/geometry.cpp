@@ -17,6 +17,8 @@ namespace {
 constexpr std::size_t no_node = std::numeric_limits<std::size_t>::max();
 constexpr std::size_t most_computed = 1U << 27U; ///< vertices; a small file can ask for any number of skinned copies
 
+const glm::mat4 mirror(glm::vec4(-1, 0, 0, 0), glm::vec4(0, 1, 0, 0), glm::vec4(0, 0, 1, 0), glm::vec4(0, 0, 0, 1));
+
 const std::vector<double>& weights_of(const tinygltf::Node& node, const tinygltf::Mesh& mesh) {
     return node.weights.empty() ? mesh.weights : node.weights;
 }
@@ -79,9 +81,19 @@ std::uint32_t Geometries::use(std::size_t node_index, std::size_t primitive_inde
     return entry->second;
 }
 
+glm::mat4 Geometries::skin_to_world(std::uint32_t geometry) const {
+    return mirrored_.contains(geometry) ? mirror : glm::mat4(1.0F);
+}
+
+void Geometries::add_notes(std::vector<std::string>& notes) const {
+    if (raw_colours_ > 0)
+        notes.push_back(fmt::format("COLOR_0 of integers that are not normalized ({} primitives), which glTF does not "
+                                    "know: they are read as if they were",
+                                    raw_colours_));
+}
+
 Geometry Geometries::read(const Source& source) {
     const auto& attributes = source.primitive.attributes;
-    document_.require(attributes.contains("POSITION"), source.place, "a POSITION attribute");
     const std::size_t count = accessors_.get(attributes.at("POSITION"), source.place + " POSITION").count;
     document_.require(count <= std::numeric_limits<std::uint32_t>::max(), source.place, "fewer than 2^32 vertices");
     Geometry geometry;
@@ -91,6 +103,9 @@ Geometry Geometries::read(const Source& source) {
     geometry.index_count = geometry.vertex_count;
 
     const std::vector<double>& weights = weights_of(source.node, source.mesh);
+    const std::size_t targets = source.primitive.targets.size();
+    document_.require(targets == 0 || weights.empty() || weights.size() == targets, source.place,
+                      "weights for its {} targets, got {}", targets, weights.size());
     if (source.node.skin >= 0 || is_morphed(weights)) {
         read_shape(geometry, source, weights);
     } else {
@@ -122,10 +137,12 @@ void Geometries::read_attribute(Geometry& geometry, const Source& source, const 
     if (!has(source.primitive, name)) return;
     const int accessor = source.primitive.attributes.at(name);
     const std::string place = fmt::format("{} {}", source.place, name);
-    const Wanted wanted{components[0], components[1]};
-    const std::size_t count = accessors_.get(accessor, place).count;
-    document_.require(count == geometry.vertex_count, place, "{} elements like POSITION, got {}", geometry.vertex_count,
-                      count);
+    const bool colours = semantic == Semantic::colour;
+    const Wanted wanted{.least_components = components[0], .most_components = components[1], .normalized = colours};
+    const tinygltf::Accessor& data = accessors_.get(accessor, place);
+    if (colours && data.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT && !data.normalized) ++raw_colours_;
+    document_.require(data.count == geometry.vertex_count, place, "a count of {} like POSITION, got {}",
+                      geometry.vertex_count, data.count);
     if (accessors_.lies_in_file(accessor, place)) {
         geometry.attributes.push_back(accessors_.in_place(accessor, semantic, wanted, place));
         return;
@@ -160,7 +177,7 @@ void Geometries::morph(std::vector<glm::vec4>& values, const Source& source, con
         if (weights[i] == 0.0 || found == source.primitive.targets[i].end()) continue;
         const std::string place = fmt::format("{} target {} {}", source.place, i, name);
         const auto moves = accessors_.floats(found->second, {3, 3}, place);
-        document_.require(moves.size() == values.size(), place, "{} elements like {}, got {}", values.size(), name,
+        document_.require(moves.size() == values.size(), place, "a count of {} like {}, got {}", values.size(), name,
                           moves.size());
         for (std::size_t v = 0; v < values.size(); ++v)
             values[v] += static_cast<float>(weights[i]) * glm::vec4(glm::vec3(moves[v]), 0.0F);
@@ -174,8 +191,9 @@ std::vector<glm::mat4> Geometries::skin_matrices(const Source& source, std::size
     std::vector<glm::mat4> inverse_bind(skin.joints.size(), glm::mat4(1.0F));
     if (skin.inverseBindMatrices >= 0)
         inverse_bind = accessors_.matrices(skin.inverseBindMatrices, source.place + " inverseBindMatrices");
-    document_.require(inverse_bind.size() >= skin.joints.size(), source.place, "{} inverse bind matrices, got {}",
-                      skin.joints.size(), inverse_bind.size());
+    document_.require(inverse_bind.size() >= skin.joints.size(), source.place,
+                      "inverseBindMatrices with a count of {}, as many as joints, got {}", skin.joints.size(),
+                      inverse_bind.size());
     std::vector<glm::dmat4> joints;
     for (std::size_t i = 0; i < skin.joints.size(); ++i)
         joints.push_back(document_.at(hierarchy_.world, skin.joints[i], source.place + " skin", "joint") *
@@ -187,11 +205,13 @@ std::vector<glm::mat4> Geometries::skin_matrices(const Source& source, std::size
         const std::string place = fmt::format("{} JOINTS_{}", source.place, set);
         const std::string name = fmt::format("WEIGHTS_{}", set);
         document_.require(has(source.primitive, name.c_str()), place, "{} as well", name);
-        const auto numbers =
-            accessors_.floats(source.primitive.attributes.at(fmt::format("JOINTS_{}", set)), {4, 4}, place);
+        const int joint_accessor = source.primitive.attributes.at(fmt::format("JOINTS_{}", set));
+        document_.require(!accessors_.get(joint_accessor, place).normalized, place, "integers that are not normalized");
+        const auto numbers = accessors_.floats(joint_accessor, {4, 4}, place);
         const auto weights = accessors_.floats(source.primitive.attributes.at(name), {4, 4}, place);
-        document_.require(numbers.size() == vertices && weights.size() == vertices, place, "{} elements like POSITION",
-                          vertices);
+        document_.require(numbers.size() == vertices && weights.size() == vertices, place,
+                          "a count of {} like POSITION, got {} and {} {}", vertices, numbers.size(), weights.size(),
+                          name);
         for (std::size_t v = 0; v < vertices; ++v)
             for (int i = 0; i < 4; ++i) {
                 const double weight = static_cast<double>(weights[v][i]);
@@ -216,11 +236,19 @@ void Geometries::read_shape(Geometry& geometry, const Source& source, const std:
     if (has(source.primitive, "NORMAL")) {
         normals = accessors_.floats(attributes.at("NORMAL"), {3, 3}, source.place + " NORMAL");
         document_.require(normals.size() == positions.size(), source.place + " NORMAL",
-                          "{} elements like POSITION, got {}", positions.size(), normals.size());
+                          "a count of {} like POSITION, got {}", positions.size(), normals.size());
         morph(normals, source, weights, "NORMAL");
     }
     if (source.node.skin >= 0) {
-        const auto matrices = skin_matrices(source, positions.size());
+        auto matrices = skin_matrices(source, positions.size());
+        const auto mirroring = std::count_if(matrices.begin(), matrices.end(), [](const glm::mat4& matrix) {
+            return glm::determinant(glm::dmat3(glm::dmat4(matrix))) < 0.0;
+        });
+        if (2 * static_cast<std::size_t>(mirroring) > matrices.size()) {
+            mirrored_.insert(
+                static_cast<std::uint32_t>(resources_.geometries.size())); // the number it is going to have
+            for (glm::mat4& matrix : matrices) matrix = mirror * matrix;
+        }
         for (std::size_t v = 0; v < positions.size(); ++v)
             positions[v] = matrices[v] * glm::vec4(glm::vec3(positions[v]), 1.0F);
         for (std::size_t v = 0; v < normals.size(); ++v)

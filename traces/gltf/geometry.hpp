@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,13 @@ class Geometries {
     /// The number among the resources of a primitive of a node's mesh. Draws share it, except those of skins and of
     /// nodes with morph weights of their own.
     std::uint32_t use(std::size_t node, std::size_t primitive);
+
+    /// Leads a geometry with a skin into the world. It mirrors where the joints do, so that faces keep their front
+    /// (glTF 2.0, section 3.7.4), of which the vertices alone know nothing.
+    glm::mat4 skin_to_world(std::uint32_t geometry) const;
+
+    /// Of which it was read otherwise than it is written.
+    void add_notes(std::vector<std::string>& notes) const;
 
   private:
     // A primitive at its node, for as long as it is read.
@@ -55,7 +63,9 @@ class Geometries {
     const Hierarchy& hierarchy_;
     pipeline::Resources& resources_;
     std::map<std::array<std::size_t, 3>, std::uint32_t> geometries_; ///< by mesh, primitive, node (or none)
-    std::size_t computed_ = 0; ///< vertices of geometries that are not in the file
+    std::set<std::uint32_t> mirrored_;                               ///< geometries whose joints mirror them
+    std::size_t raw_colours_ = 0; ///< primitives with colours of integers that are not normalized
+    std::size_t computed_ = 0;    ///< vertices of geometries that are not in the file
 };
 
 } // namespace traces::gltf

@@ -4,10 +4,18 @@
 #include "pipeline/draw.hpp"
 #include "traces/gltf/document.hpp"
 
+#include <functional>
+
 namespace traces::gltf {
 
-/// Decodes an image (PNG or JPEG) to RGBA8. Throws sim::InputError for a missing file, data that is no image, and
-/// images of more than 16384 texels along a side.
-pipeline::Texture::Level decode_image(const Document& document, int image);
+/// An image whose header was read.
+struct EncodedImage {
+    std::uint32_t width = 0, height = 0;
+    std::function<std::vector<std::uint8_t>()> decode; ///< its texels, RGBA8; throws sim::InputError for broken data
+};
+
+/// PNG, JPEG or WebP. Throws sim::InputError for a missing file, data of another kind (KTX2 is named), and images of
+/// more than 16384 texels along a side.
+EncodedImage encoded_image(const Document& document, int image);
 
 } // namespace traces::gltf

@@ -80,11 +80,16 @@ AlphaMode alpha_mode_of(const Document& document, const std::string& mode, std::
 std::int32_t Materials::use_texture(int index, std::string_view place) {
     const auto& model = document_.model();
     const auto& source = document_.at(model.textures, index, place, "texture");
-    if (source.source < 0) {
-        document_.notes.push_back(fmt::format("texture {} has no PNG or JPEG image and is left out", index));
+    int image = source.source;
+    if (const auto* webp = extension(source.extensions, "EXT_texture_webp"); webp != nullptr && webp->Has("source"))
+        image = webp->Get("source").GetNumberAsInt();
+    if (image < 0) {
+        const bool basis = extension(source.extensions, "KHR_texture_basisu") != nullptr;
+        document_.notes.push_back(fmt::format("texture {} has no PNG, JPEG or WebP image{} and is left out", index,
+                                              basis ? " (KTX2 is not read)" : ""));
         return -1;
     }
-    const auto [entry, is_new] = textures_.try_emplace({source.source, source.sampler}, 0);
+    const auto [entry, is_new] = textures_.try_emplace({image, source.sampler}, 0);
     if (!is_new) return entry->second;
     Texture texture;
     texture.name = place_of("texture", static_cast<std::size_t>(index), source.name);
@@ -95,8 +100,9 @@ std::int32_t Materials::use_texture(int index, std::string_view place) {
         texture.min_filter = min_filter_of(sampler.minFilter);
         if (sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST) texture.mag_filter = Filter::nearest;
     }
-    texture.levels.push_back(decode_image(document_, source.source));
-    texture.make_mips();
+    EncodedImage encoded = encoded_image(document_, image);
+    texture.make_empty_levels(encoded.width, encoded.height);
+    texture.decode = std::move(encoded.decode);
     entry->second = static_cast<std::int32_t>(resources_.textures.size());
     resources_.textures.push_back(std::move(texture));
     return entry->second;

@@ -5,31 +5,18 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
+#include <optional>
 
 namespace traces::gltf {
 
 namespace {
 
-constexpr std::size_t deepest_level = 1000;
-
 std::string node_place(const Document& document, std::size_t node) {
     return place_of("node", node, document.model().nodes[node].name);
 }
 
-bool all_finite(const std::vector<double>& numbers) {
-    for (const double number : numbers)
-        if (!std::isfinite(number)) return false;
-    return true;
-}
-
 glm::dmat4 local_matrix(const Document& document, std::size_t index) {
     const tinygltf::Node& node = document.model().nodes[index];
-    const auto sized = [](const std::vector<double>& list, std::size_t size) {
-        return (list.empty() || list.size() == size) && all_finite(list);
-    };
-    document.require(
-        sized(node.matrix, 16) && sized(node.translation, 3) && sized(node.rotation, 4) && sized(node.scale, 3),
-        node_place(document, index), "a matrix of 16 finite numbers, or translation 3, rotation 4, scale 3");
     if (!node.matrix.empty()) {
         glm::dmat4 matrix;
         for (int i = 0; i < 16; ++i) matrix[i / 4][i % 4] = node.matrix[static_cast<std::size_t>(i)];
@@ -48,11 +35,11 @@ std::vector<std::size_t> find_roots(const Document& document) {
     const auto& nodes = document.model().nodes;
     std::vector<bool> has_parent(nodes.size());
     for (std::size_t i = 0; i < nodes.size(); ++i)
-        for (const int child : nodes[i].children) {
-            document.at(nodes, child, node_place(document, i), "child");
-            const auto number = static_cast<std::size_t>(child);
-            document.require(!has_parent[number], node_place(document, number), "one parent, got two");
-            has_parent[number] = true;
+        for (std::size_t c = 0; c < nodes[i].children.size(); ++c) {
+            const auto child = static_cast<std::size_t>(nodes[i].children[c]);
+            document.require(!has_parent[child], fmt::format("nodes[{}].children[{}]", i, c),
+                             "a node that is nobody else's child, got {}", child);
+            has_parent[child] = true;
         }
     std::vector<std::size_t> roots;
     for (std::size_t i = 0; i < nodes.size(); ++i)
@@ -60,40 +47,42 @@ std::vector<std::size_t> find_roots(const Document& document) {
     return roots;
 }
 
-struct Step {
-    std::size_t node, level;
-};
-
-// Calls visit(node, level, parent's matrix) parents first, children in the order of their list.
+// Calls visit(node) parents first, children in the order of their list. Without recursion: files can nest their nodes
+// as deeply as they like.
 template <class Visit>
 void walk(const Document& document, const std::vector<std::size_t>& from, Visit&& visit) {
-    std::vector<Step> todo;
-    for (std::size_t i = from.size(); i-- > 0;) todo.push_back({from[i], 1});
+    std::vector<std::size_t> todo(from.rbegin(), from.rend());
     while (!todo.empty()) {
-        const Step step = todo.back();
+        const std::size_t node = todo.back();
         todo.pop_back();
-        document.require(step.level <= deepest_level, node_place(document, step.node), "at most {} levels of nodes",
-                         deepest_level);
-        visit(step.node);
-        const auto& children = document.model().nodes[step.node].children;
-        for (std::size_t i = children.size(); i-- > 0;)
-            todo.push_back({static_cast<std::size_t>(children[i]), step.level + 1});
+        visit(node);
+        const auto& children = document.model().nodes[node].children;
+        for (std::size_t i = children.size(); i-- > 0;) todo.push_back(static_cast<std::size_t>(children[i]));
     }
 }
 
-std::vector<glm::dmat4> world_matrices(const Document& document, const std::vector<std::size_t>& roots) {
+bool is_visible(const tinygltf::Node& node) {
+    const auto found = node.extensions.find("KHR_node_visibility");
+    return found == node.extensions.end() || !found->second.Has("visible") || found->second.Get("visible").Get<bool>();
+}
+
+void spread_from_parents(const Document& document, const std::vector<std::size_t>& roots, Hierarchy& hierarchy) {
     const auto& nodes = document.model().nodes;
-    std::vector<glm::dmat4> world(nodes.size());
     std::vector<bool> reached(nodes.size());
-    for (std::size_t i = 0; i < nodes.size(); ++i) world[i] = local_matrix(document, i);
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        hierarchy.world.push_back(local_matrix(document, i));
+        hierarchy.hidden.push_back(!is_visible(nodes[i]));
+    }
     walk(document, roots, [&](std::size_t node) {
         reached[node] = true;
-        for (const int child : nodes[node].children)
-            world[static_cast<std::size_t>(child)] = world[node] * world[static_cast<std::size_t>(child)];
+        for (const int number : nodes[node].children) {
+            const auto child = static_cast<std::size_t>(number);
+            hierarchy.world[child] = hierarchy.world[node] * hierarchy.world[child];
+            hierarchy.hidden[child] = hierarchy.hidden[child] || hierarchy.hidden[node];
+        }
     });
     for (std::size_t i = 0; i < nodes.size(); ++i)
-        document.require(reached[i], node_place(document, i), "no cycle of nodes");
-    return world;
+        document.require(reached[i], fmt::format("nodes[{}].children", i), "no cycle of nodes");
 }
 
 std::vector<std::size_t> scene_roots(const Document& document, const std::string& which,
@@ -108,33 +97,50 @@ std::vector<std::size_t> scene_roots(const Document& document, const std::string
     }
     const auto& scene = document.at(model.scenes, number, "scene", "scene");
     std::vector<std::size_t> chosen;
-    for (const int node : scene.nodes) {
-        document.at(model.nodes, node, fmt::format("scene {}", number), "node");
-        chosen.push_back(static_cast<std::size_t>(node));
-    }
+    for (const int node : scene.nodes) chosen.push_back(static_cast<std::size_t>(node));
     return chosen;
 }
 
-glm::mat4 without_scale(const glm::dmat4& matrix) {
-    glm::dmat4 result = matrix;
+// What looks along -z of its node with +y up, as a rotation and a place: the node's scale is ignored, the sign of it,
+// too (glTF 2.0, section 3.10). Where axes are not at right angles, the direction of view is kept, then what is up.
+// Nothing where the scale is 0.
+std::optional<glm::mat4> without_scale(const glm::dmat4& world) {
+    glm::dmat4 result = world;
     for (int column = 0; column < 3; ++column) {
-        const double length = glm::length(glm::dvec3(matrix[column]));
-        if (length > 0.0) result[column] = matrix[column] / length;
+        const double length = glm::length(glm::dvec3(world[column]));
+        if (!(length > 0.0 && std::isfinite(length))) return std::nullopt;
+        result[column] = world[column] / length;
+    }
+    const glm::dvec3 x(result[0]), y(result[1]), z(result[2]);
+    constexpr double right_enough = 1e-6;
+    if (std::max({std::fabs(glm::dot(x, y)), std::fabs(glm::dot(y, z)), std::fabs(glm::dot(z, x))}) > right_enough) {
+        const glm::dvec3 across = glm::cross(y, z);
+        if (!(glm::length(across) > 0.0)) return std::nullopt;
+        result[0] = glm::dvec4(glm::normalize(across), 0.0);
+        result[1] = glm::dvec4(glm::cross(z, glm::dvec3(result[0])), 0.0);
+    } else if (glm::determinant(glm::dmat3(result)) < 0.0) {
+        result[0] = -result[0];
     }
     return glm::mat4(result);
 }
 
-Camera camera_of(const Document& document, int index, const glm::dmat4& world) {
+Camera camera_of(const Document& document, int index, std::size_t node, const glm::dmat4& world) {
     const auto& source = document.at(document.model().cameras, index, "nodes", "camera");
-    const auto place = place_of("camera", static_cast<std::size_t>(index), source.name);
+    const std::string place = fmt::format("cameras[{}].{}", index, source.type);
+    const auto require_order = [&](double near, double far) {
+        document.require(far > near, place + ".zfar", "more than znear {}, got {}", near, far);
+    };
     Camera camera;
     camera.name = source.name;
-    camera.to_world = without_scale(world);
+    const auto to_world = without_scale(world);
+    document.require(to_world.has_value(), node_place(document, node),
+                     "a scale that is not 0, as a camera stands there");
+    camera.to_world = *to_world;
     camera.orthographic = source.type == "orthographic";
     if (camera.orthographic) {
         const auto& o = source.orthographic;
-        document.require(o.xmag > 0.0 && o.ymag > 0.0 && o.zfar > o.znear && o.znear >= 0.0, place,
-                         "positive xmag and ymag, and 0 <= znear < zfar");
+        document.require(o.xmag > 0.0, place, "an object");
+        require_order(o.znear, o.zfar);
         camera.xmag = static_cast<float>(o.xmag);
         camera.ymag = static_cast<float>(o.ymag);
         camera.near = static_cast<float>(o.znear);
@@ -142,9 +148,8 @@ Camera camera_of(const Document& document, int index, const glm::dmat4& world) {
         return camera;
     }
     const auto& p = source.perspective;
-    document.require(source.type == "perspective", place, "type perspective or orthographic");
-    document.require(p.yfov > 0.0 && p.yfov < 3.14159 && p.znear > 0.0 && (p.zfar == 0.0 || p.zfar > p.znear), place,
-                     "yfov between 0 and pi, and 0 < znear < zfar");
+    document.require(p.yfov > 0.0, place, "an object");
+    if (p.zfar != 0.0) require_order(p.znear, p.zfar);
     camera.fovy = static_cast<float>(p.yfov);
     camera.aspect = static_cast<float>(p.aspectRatio);
     camera.near = static_cast<float>(p.znear);
@@ -154,23 +159,18 @@ Camera camera_of(const Document& document, int index, const glm::dmat4& world) {
 
 Light light_of(const Document& document, int index, const glm::dmat4& world) {
     const auto& source = document.at(document.model().lights, index, "nodes", "light");
-    const auto place = place_of("light", static_cast<std::size_t>(index), source.name);
     Light light;
     light.name = source.name;
-    light.to_world = without_scale(world);
+    light.to_world = without_scale(world).value_or(glm::translate(glm::mat4(1.0F), glm::vec3(world[3])));
     if (source.type == "directional")
         light.kind = LightKind::directional;
     else if (source.type == "spot")
         light.kind = LightKind::spot;
-    else
-        document.require(source.type == "point", place, "type directional, point or spot");
     if (source.color.size() == 3) light.colour = glm::vec3(source.color[0], source.color[1], source.color[2]);
     light.intensity = static_cast<float>(source.intensity);
     light.range = static_cast<float>(source.range);
     light.inner_cone = static_cast<float>(source.spot.innerConeAngle);
     light.outer_cone = static_cast<float>(source.spot.outerConeAngle);
-    document.require(std::isfinite(light.intensity) && light.intensity >= 0.0F && std::isfinite(light.range), place,
-                     "a finite intensity of at least 0");
     return light;
 }
 
@@ -188,10 +188,10 @@ glm::dmat4 transform(const glm::dvec3& translation, const glm::dvec4& rotation, 
 Hierarchy read_hierarchy(const Document& document, const std::string& which) {
     const std::vector<std::size_t> roots = find_roots(document);
     Hierarchy hierarchy;
-    hierarchy.world = world_matrices(document, roots);
+    spread_from_parents(document, roots, hierarchy);
     std::vector<bool> seen(hierarchy.world.size());
     walk(document, scene_roots(document, which, roots), [&](std::size_t node) {
-        document.require(!seen[node], node_place(document, node), "to be in the scene once");
+        document.require(!seen[node], "scenes.nodes", "roots only, got node {} and one above it", node);
         seen[node] = true;
         hierarchy.in_scene.push_back(node);
     });
@@ -204,22 +204,18 @@ std::vector<glm::mat4> instances_of(const Document& document, const Accessors& a
     const auto found = extensions.find("EXT_mesh_gpu_instancing");
     if (found == extensions.end()) return {glm::mat4(world)};
     const std::string place = node_place(document, node) + " EXT_mesh_gpu_instancing";
-    document.require(found->second.IsObject() && found->second.Has("attributes") &&
-                         found->second.Get("attributes").IsObject(),
-                     place, "attributes");
     const tinygltf::Value& attributes = found->second.Get("attributes");
     const auto read = [&](const char* name, std::uint8_t components) {
         if (!attributes.Has(name)) return std::vector<glm::vec4>();
-        const tinygltf::Value& index = attributes.Get(name);
-        document.require(index.IsInt(), place, "the number of an accessor as {}", name);
-        return accessors.floats(index.GetNumberAsInt(), {components, components}, fmt::format("{} {}", place, name));
+        return accessors.floats(attributes.Get(name).GetNumberAsInt(), {components, components},
+                                fmt::format("{} {}", place, name));
     };
     const auto translations = read("TRANSLATION", 3), rotations = read("ROTATION", 4), scales = read("SCALE", 3);
     const auto count = std::max({translations.size(), rotations.size(), scales.size()});
-    document.require(count >= 1, place, "TRANSLATION, ROTATION or SCALE");
+    document.require(count >= 1, place, "attributes TRANSLATION, ROTATION or SCALE");
     for (const auto* list : {&translations, &rotations, &scales})
-        document.require(list->empty() || list->size() == count, place, "{} elements in each attribute, got {}", count,
-                         list->size());
+        document.require(list->empty() || list->size() == count, place,
+                         "a count of {} in each of its attributes, got {}", count, list->size());
     std::vector<glm::mat4> matrices(count);
     for (std::size_t i = 0; i < count; ++i)
         matrices[i] =
@@ -235,7 +231,7 @@ std::vector<Camera> read_cameras(const Document& document, const Hierarchy& hier
         if (document.model().nodes[node].camera >= 0) used.emplace_back(document.model().nodes[node].camera, node);
     std::stable_sort(used.begin(), used.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     std::vector<Camera> cameras;
-    for (const auto& [camera, node] : used) cameras.push_back(camera_of(document, camera, hierarchy.world[node]));
+    for (const auto& [camera, node] : used) cameras.push_back(camera_of(document, camera, node, hierarchy.world[node]));
     return cameras;
 }
 
@@ -244,7 +240,7 @@ std::vector<Light> read_lights(const Document& document, const Hierarchy& hierar
     for (const std::size_t node : hierarchy.in_scene) {
         const auto& extensions = document.model().nodes[node].extensions;
         const auto found = extensions.find("KHR_lights_punctual");
-        if (found == extensions.end() || !found->second.IsObject() || !found->second.Has("light")) continue;
+        if (found == extensions.end() || hierarchy.hidden[node]) continue;
         lights.push_back(light_of(document, found->second.Get("light").GetNumberAsInt(), hierarchy.world[node]));
     }
     return lights;

@@ -13,12 +13,12 @@ namespace traces::gltf {
 
 struct Hierarchy {
     std::vector<glm::dmat4> world;     ///< node to world, for every node of the file
+    std::vector<bool> hidden;          ///< of every node: it or one above it is not visible (KHR_node_visibility)
     std::vector<std::size_t> in_scene; ///< nodes of the chosen scene, parents first, in the order of the file's lists
 };
 
 /// @param which number of a scene, "" for the default scene (the first where the file names none)
-/// Throws sim::InputError for nodes with two parents, cycles, more than 1000 levels, and transforms that are no
-/// numbers.
+/// Throws sim::InputError for nodes with two parents and for cycles.
 Hierarchy read_hierarchy(const Document& document, const std::string& which);
 
 /// Translation, rotation and scale as a matrix; the rotation is a quaternion (x, y, z, w) of any length but 0.

@@ -50,14 +50,17 @@ pipeline::VertexAttribute floats(pipeline::Semantic semantic, std::uint32_t buff
     return attribute;
 }
 
-void bring_into_range(std::vector<float>& scalars, std::vector<std::string>& notes) {
+/// Returns the power of two by which all scalars are divided.
+int bring_into_range(std::vector<float>& scalars, std::vector<std::string>& notes) {
     float largest = 0.0F;
     for (const float scalar : scalars) largest = std::max(largest, std::fabs(scalar));
-    if (largest <= largest_scalar) return;
+    if (largest <= largest_scalar) return 0;
     const int exponent = std::ilogb(largest / largest_scalar) + 1;
     for (float& scalar : scalars) scalar = std::ldexp(scalar, -exponent);
-    notes.push_back(fmt::format("scalars are divided by 2^{}, so that none is above {}", exponent,
-                                static_cast<double>(largest_scalar)));
+    notes.push_back(fmt::format("scalars are divided by 2^{}, so that none is above {}; parameters are still in the "
+                                "file's own scalars",
+                                exponent, static_cast<double>(largest_scalar)));
+    return exponent;
 }
 
 pipeline::Material scalar_material() {
@@ -71,8 +74,8 @@ pipeline::Material scalar_material() {
 Scene scene_of_scalars(const std::string& name, const std::vector<glm::vec3>& positions, std::vector<float>& scalars,
                        std::vector<std::string>& notes) {
     CHECK(scalars.size() == positions.size());
-    bring_into_range(scalars, notes);
     Scene scene;
+    scene.scalar_exponent = bring_into_range(scalars, notes);
     scene.resources = std::make_shared<pipeline::Resources>();
     scene.notes = notes;
     pipeline::Resources& resources = *scene.resources;

@@ -72,6 +72,10 @@ class VtkFile {
         if (keyword == "LOOKUP_TABLE") return lookup_table();
         if (keyword == "VECTORS" || keyword == "NORMALS") return skip_tuples(3);
         if (keyword == "TENSORS") return skip_tuples(9);
+        if (keyword == "TENSORS6") return skip_tuples(6);
+        if (keyword == "GLOBAL_IDS" || keyword == "PEDIGREE_IDS" || keyword == "EDGE_FLAGS") return skip_tuples(1);
+        if (keyword == "TEXTURE_COORDINATES") return texture_coordinates();
+        if (keyword == "COLOR_SCALARS") return colours();
         file_.fail_at_line(fmt::format("a section of an unstructured grid, got {}", in_quotes(keyword)));
     }
 
@@ -173,8 +177,8 @@ class VtkFile {
             const std::string type(file_.word());
             if (owner_ == Owner::points && components == 1 && tuples == mesh_.positions.size() && mesh_.scalars.empty())
                 take_scalars(values_.read(tuples, type, "field"), 1);
-            else if (type == "string")
-                for (std::uint64_t line = 0; line <= tuples * components; ++line) file_.line();
+            else if (upper(type) == "STRING" || upper(type) == "UTF8_STRING")
+                values_.skip_strings(tuples * components);
             else
                 values_.skip(tuples * components, type, "field");
         }
@@ -197,6 +201,19 @@ class VtkFile {
         file_.word(); // a name
         const std::uint64_t entries = read_count(file_, most, "number of colours");
         values_.skip(entries * 4, "unsigned_char", "colours");
+    }
+
+    void colours() {
+        file_.word(); // a name
+        const std::uint64_t components = read_count(file_, 1'000'000, "number of components");
+        values_.skip(tuples_ * components, "unsigned_char", "colours");
+    }
+
+    void texture_coordinates() {
+        file_.word(); // a name
+        const std::uint64_t components = read_count(file_, 3, "number of components");
+        const std::string type(file_.word());
+        values_.skip(tuples_ * components, type, "texture coordinates");
     }
 
     void skip_tuples(std::uint64_t components) {

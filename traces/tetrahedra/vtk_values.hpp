@@ -18,6 +18,8 @@ class VtkValues {
     std::vector<double> read(std::uint64_t count, std::string_view type, std::string_view what);
     /// Moves behind them.
     void skip(std::uint64_t count, std::string_view type, std::string_view what);
+    /// Moves behind texts: a line each, or as long as it says.
+    void skip_strings(std::uint64_t count);
 
   private:
     std::vector<double> read_words(std::uint64_t count, std::string_view what);

@@ -36,7 +36,7 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const Isos
     prepare_scalars(frame, params.sorted);
     models::IsosurfaceSetup setup;
     setup.k = params.k;
-    setup.iso_values = params.iso.empty() ? std::vector<float>{0.5F * range.lo + 0.5F * range.hi} : params.iso;
+    setup.iso_values = iso_values_of(frame, scene, params.iso, range);
     setup.depth = pipeline::EyeDepth(view.projection);
     frame.program = models::make_isosurface(setup);
     frame.resolve = make_isosurface_picture(params.silhouettes);

@@ -50,13 +50,13 @@ struct ParticlesParams {
 };
 static_assert(sim::fully_described<ParticlesParams>);
 
-pipeline::Frame isosurface_frame(pipeline::Frame frame, const ParticlesParams& params) {
+pipeline::Frame isosurface_frame(pipeline::Frame frame, const Scene& scene, const ParticlesParams& params) {
     const ScalarRange range = scalar_range(frame, "workload particles");
     draw_sprites(frame, points_of(frame), params.size, SpriteColour::scalar);
     prepare_scalars(frame, params.sorted);
     models::IsosurfaceSetup setup;
     setup.k = params.k;
-    setup.iso_values = params.iso.empty() ? std::vector<float>{0.5F * range.lo + 0.5F * range.hi} : params.iso;
+    setup.iso_values = iso_values_of(frame, scene, params.iso, range);
     setup.depth = pipeline::EyeDepth(frame.view.projection);
     frame.program = models::make_isosurface(setup);
     frame.resolve = make_isosurface_picture(params.silhouettes);
@@ -73,7 +73,7 @@ pipeline::Frame layers_frame(pipeline::Frame frame, const ParticlesParams& param
 pipeline::Frame build(const Scene& scene, const pipeline::View& view, const ParticlesParams& params) {
     pipeline::Frame frame = frame_of(scene, view);
     frame.background = {params.background[0], params.background[1], params.background[2], 1.0F};
-    return params.method == ParticleMethod::isosurface ? isosurface_frame(std::move(frame), params)
+    return params.method == ParticleMethod::isosurface ? isosurface_frame(std::move(frame), scene, params)
                                                        : layers_frame(std::move(frame), params);
 }
 

@@ -16,6 +16,8 @@ using pipeline::Semantic;
 
 namespace {
 
+constexpr float most_in_colour = 65504.0F; ///< the shader bounds colours by it
+
 std::vector<double> centroid_distances(const pipeline::Resources& resources, const pipeline::Geometry& geometry,
                                        const glm::dmat4& to_eye) {
     const pipeline::AttributeReader position(resources, *geometry.find(Semantic::position));
@@ -71,7 +73,28 @@ ScalarRange scalar_range(const pipeline::Frame& frame, std::string_view place) {
             range.hi = std::max(range.hi, scalar);
         }
     }
+    const float largest = std::max(std::fabs(range.lo), std::fabs(range.hi));
+    if (!frame.draws.empty() && largest > most_in_colour)
+        throw sim::InputError(
+            fmt::format("{}: expected scalars of at most {}, which the colours of fragments hold, got {}", place,
+                        most_in_colour, largest));
     return range;
+}
+
+float fragment_scalar(const Scene& scene, float value) { return std::ldexp(value, -scene.scalar_exponent); }
+
+std::vector<float> iso_values_of(pipeline::Frame& frame, const Scene& scene, const std::vector<float>& wanted,
+                                 ScalarRange range) {
+    if (wanted.empty()) return {0.5F * range.lo + 0.5F * range.hi};
+    std::vector<float> values;
+    for (const float value : wanted) {
+        values.push_back(fragment_scalar(scene, value));
+        if (!(values.back() >= range.lo && values.back() <= range.hi))
+            frame.notes.push_back(fmt::format("iso-value {} has no surface: the scalars are {} to {}", value,
+                                              std::ldexp(range.lo, scene.scalar_exponent),
+                                              std::ldexp(range.hi, scene.scalar_exponent)));
+    }
+    return values;
 }
 
 void prepare_scalars(pipeline::Frame& frame, bool sorted) {

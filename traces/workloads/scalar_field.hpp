@@ -2,6 +2,7 @@
 #pragma once
 
 #include "pipeline/frame.hpp"
+#include "traces/scene.hpp"
 
 #include <cstdint>
 #include <string_view>
@@ -14,8 +15,16 @@ struct ScalarRange {
 };
 
 /// Least and largest scalar of the drawn geometries. Throws sim::InputError, beginning with `place`, when one of them
-/// has no vertex colours.
+/// has no vertex colours, or scalars that a colour cannot hold.
 ScalarRange scalar_range(const pipeline::Frame& frame, std::string_view place);
+
+/// A parameter in the scene's own scalars as the scalar of a fragment.
+float fragment_scalar(const Scene& scene, float value);
+
+/// Iso-values as scalars of fragments, the middle of the range for none. Those that no surface can have, outside of the
+/// range, are noted in the frame.
+std::vector<float> iso_values_of(pipeline::Frame& frame, const Scene& scene, const std::vector<float>& wanted,
+                                 ScalarRange range);
 
 /// Changes the frame's resources (its own from now on) so that fragments carry their scalar unchanged: materials are
 /// unlit, white, opaque and without textures. With `sorted`, the triangles of every draw are in the order of the

@@ -17,7 +17,9 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <numeric>
+#include <optional>
 
 namespace traces {
 
@@ -264,10 +266,33 @@ void check(const SoftShadowParams& params, const pipeline::View& view) {
         throw sim::InputError(fmt::format("{}: expected a perspective camera, got a parallel projection", place));
 }
 
-pipeline::Frame build(const Scene& scene, const pipeline::View& view, const SoftShadowParams& params) {
+/// Why 16-bit floats cannot hold distances from the light and places in the scene; nothing where they can. A place that
+/// is off by a 256th of the scene is in the shadow of something else.
+std::optional<std::string> too_large_for_halves(const Scene& scene, const AreaLight& light) {
+    constexpr double largest = 65504.0, least_step = 0x1p-24, steps = 256.0;
+    const glm::dvec3 extent = glm::max(glm::abs(glm::dvec3(scene.lo)), glm::abs(glm::dvec3(scene.hi)));
+    const double place_of_corner = std::max({extent.x, extent.y, extent.z});
+    const double farthest = std::max(place_of_corner, light.far);
+    if (farthest > largest) return fmt::format("numbers up to {:.6g} are above 65504", farthest);
+    const double step = std::max(least_step, std::exp2(std::floor(std::log2(place_of_corner)) - 10.0));
+    const double radius = static_cast<double>(scene.radius);
+    if (step * steps > radius)
+        return fmt::format("places up to {:.6g} have steps of {:.3g}, too coarse for a scene of radius {:.3g}",
+                           place_of_corner, step, radius);
+    return std::nullopt;
+}
+
+pipeline::Frame build(const Scene& scene, const pipeline::View& view, const SoftShadowParams& asked_for) {
+    SoftShadowParams params = asked_for;
     check(params, view);
     const AreaLight light = make_area_light(scene, params.light, params.light_size, place);
     pipeline::Frame frame = frame_of(scene, view);
+    if (params.format == ShadowFormat::rgba16f)
+        if (const auto reason = too_large_for_halves(scene, light)) {
+            params.format = ShadowFormat::rgba32f;
+            frame.notes.push_back(
+                fmt::format("format rgba16f cannot hold the scene, rgba32f is taken in its place: {}", *reason));
+        }
     frame.program = models::make_nearest_k(models::EntryKind::z, params.k);
     frame.kbuffer_view = light.view(params.map_size);
     frame.light = {light.centre, light.right * (light.width / 2.0), light.up * (light.width / 2.0)};

@@ -8,6 +8,8 @@
 #include "traces/workloads/scalar_field.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
 
 namespace traces {
 
@@ -50,12 +52,17 @@ struct VolumeParams {
 };
 static_assert(sim::fully_described<VolumeParams>);
 
-ScalarRange range_of(const pipeline::Frame& frame, const VolumeParams& params) {
+ScalarRange range_of(pipeline::Frame& frame, const Scene& scene, const VolumeParams& params) {
     const ScalarRange all = scalar_range(frame, "workload volume");
     if (params.range.empty()) return all;
     if (params.range.size() != 2 || !(params.range[0] < params.range[1]))
         throw sim::InputError("workload volume: range: expected two numbers, the lower one first");
-    return {params.range[0], params.range[1]};
+    const ScalarRange range{fragment_scalar(scene, params.range[0]), fragment_scalar(scene, params.range[1])};
+    if (range.hi < all.lo || range.lo > all.hi)
+        frame.notes.push_back(fmt::format("range {} to {}: the scalars are {} to {}", params.range[0], params.range[1],
+                                          std::ldexp(all.lo, scene.scalar_exponent),
+                                          std::ldexp(all.hi, scene.scalar_exponent)));
+    return range;
 }
 
 models::TransferFunction transfer_of(const VolumeParams& params, ScalarRange range, float extinction) {
@@ -96,7 +103,7 @@ class VolumePicture final : public pipeline::Resolve {
 
 pipeline::Frame build(const Scene& scene, const pipeline::View& view, const VolumeParams& params) {
     pipeline::Frame frame = frame_of(scene, view);
-    const ScalarRange range = range_of(frame, params);
+    const ScalarRange range = range_of(frame, scene, params);
     prepare_scalars(frame, params.sorted);
     const double radius = std::max(static_cast<double>(scene.radius), 1e-30);
     const double extinction = params.extinction < 0.0 ? 12.0 / radius : params.extinction;

@@ -1,0 +1,26 @@
+// Work on data that is not trusted, in a child process: what goes wrong there stays there.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace traces::gltf {
+
+struct ChildResult {
+    std::vector<unsigned char> bytes; ///< what the work wrote
+    std::string failure;              ///< one line why there are none; "" where all went well
+};
+
+/// Gives a forked child `size` bytes of zero and room for a line to say what is wrong; `work` returns 0 where it filled
+/// the bytes. A crash, an exception, and a child that computes for more than ten minutes are failures, too.
+ChildResult in_child_process(std::size_t size,
+                             const std::function<int(std::span<unsigned char>, std::span<char>)>& work);
+
+/// The table of functions of a module (ropsim_draco.so), loaded once. Throws sim::InputError that names the module and
+/// the Debian package that it needs.
+const void* load_module(const char* file, const char* function, const char* purpose, const char* package);
+
+} // namespace traces::gltf

@@ -27,7 +27,6 @@ void stability(const StabilityCommand& command) {
                                       {stability::table_of(outcomes), stability::curves_table(curves)},
                                       stability::page_of(outcomes, curves, pictures));
         if (pictures) {
-            const FilesInProgress keep_alive;
             for (const auto& [name, picture] : stability::pictures_of(outcomes))
                 reports::write_png(std::filesystem::path(command.directory) / name, *picture);
         }

@@ -22,7 +22,7 @@ void all_designs(Finding& finding, const traces::Scene& scene, std::uint32_t wid
         finding.error(static_cast<double>(replay.streams.back().fragments) - fragments);
         for (const std::string& design : designs) {
             const pipeline::RunResult run = replay.run(design);
-            finding.error(static_cast<double>(design == "existing" ? run.unexplained_pixels : run.wrong_pixels));
+            finding.error(static_cast<double>(design == "existing" ? run.unexplained_pixels() : run.wrong_pixels));
             finding.require(run.cycles > 0, "time passes");
             if (fragments == 0) finding.error(static_cast<double>(run.fragments));
         }

@@ -31,7 +31,7 @@ void conserved(Finding& finding, const pipeline::RunResult& run, const std::stri
         if (link.key().starts_with("dram_")) clients += number_at(link.value(), "/bytes");
     const double moved = number_at(run.bytes, "/dram/bytes");
     finding.require(moved > 0 && clients == moved, fmt::format("{}: {} bytes moved for {}", design, moved, clients));
-    finding.require(run.unexplained_pixels == 0, design + ": what is wrong is explained");
+    finding.require(run.unexplained_pixels() == 0, design + ": what is wrong is explained");
     if (design == "existing") return;
     finding.require(run.hazards.total() == 0, design + ": no hazard");
     finding.error(static_cast<double>(run.wrong_pixels));

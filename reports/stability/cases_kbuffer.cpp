@@ -277,7 +277,7 @@ void add_hazards(std::vector<Case>& cases) {
                                              {.width = 2, .height = 2, .knobs = {"k=4"}, .threads = 1});
                          const pipeline::RunResult bare = replay.run("existing");
                          finding.require(bare.hazards.total() > 0 && bare.wrong_pixels > 0, "existing goes wrong");
-                         finding.error(static_cast<double>(bare.unexplained_pixels));
+                         finding.error(static_cast<double>(bare.unexplained_pixels()));
                          for (const char* design : {"scoreboard", "blender", "multipass", "interlock", "peel-rop"}) {
                              const pipeline::RunResult run = replay.run(design);
                              finding.error(static_cast<double>(run.wrong_pixels + run.hazards.total()));

@@ -107,7 +107,7 @@ std::string text_of(const std::vector<Outcome>& outcomes, TerminalStyle style) {
     }
     const std::vector<TextColumn> columns{{"case", "", true},   {"side", "", true}, {"error", "", false},
                                           {"bound", "", false}, {"unit", "", true}, {"", "", true}};
-    std::string text = text_table(columns, rows, style.colour) + "\n" + summary_of(outcomes) + "\n";
+    std::string text = text_table(columns, rows, style) + "\n" + summary_of(outcomes) + "\n";
     if (!failed.empty()) text += "Failed:\n" + failed;
     return text;
 }

@@ -3,6 +3,7 @@
 
 #include <bit>
 #include <fmt/format.h>
+#include <string_view>
 #include <tuple>
 
 namespace support {
@@ -21,7 +22,7 @@ auto key(const pipeline::HazardCounts& counts) { return std::tuple(counts.by, co
 class Comparison {
   public:
     template <class T>
-    void value(const char* name, const T& a, const T& b) {
+    void value(std::string_view name, const T& a, const T& b) {
         if (first_.empty() && !(a == b)) first_ = name;
     }
 

@@ -186,9 +186,7 @@ void add_sensitivity(CLI::App& command, SensitivityCommand& options) {
 }
 
 void add_stability(CLI::App& command, StabilityCommand& options) {
-    command
-        .add_option("--filter", options.filter, "Cases to run: ids with * and ?, separated by commas (default: all)")
-        ->type_name("IDS");
+    command.add_option("--filter", options.filter, "Ids of cases with * and ?, by commas (all)")->type_name("IDS");
     command.add_option("--out", options.directory, "Folder for stability.json, tables and a page")->type_name("DIR");
     command.add_flag("--json", options.json, "Print one JSON document on standard output, and nothing else");
     command.add_flag("--no-images", options.no_images, "Write no pictures (OpenImageIO is not loaded)");
@@ -298,8 +296,7 @@ struct Parser {
         command = app.add_subcommand("describe", "Say what can be chosen and what the numbers mean");
         command
             ->add_option("topic", describe.topic,
-                         "gpus, designs, programs, workloads, generators, preparations, studies, stability, params, "
-                         "stats, or a name")
+                         "gpus, designs, programs, workloads, generators, preparations, studies, stability, ... or a name")
             ->type_name("TOPIC");
         command->add_flag("--json", describe.json, "Print one JSON document");
         command->add_flag("--names", describe.names, "Print names only, one a line");

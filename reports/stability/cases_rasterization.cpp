@@ -84,9 +84,10 @@ void add_thin(std::vector<Case>& cases) {
                      "needles from depth 0 to 1 whose plane has slopes of thousands per pixel",
                      "all depths within the range of the corners", "", 0.0, [](Finding& finding) {
                          for (int i = 0; i < 64; ++i) {
-                             const float x = static_cast<float>(i);
-                             const auto stream = drawn({{{x, 0, 0.0F}, {x + unit, 64, 1.0F}, {x + 2 * unit, 64, 0.5F}},
+                             const float x = static_cast<float>(i) + 0.5F; // through pixel centres
+                             const auto stream = drawn({{{x - unit, 0, 0.0F}, {x, 64, 1.0F}, {x + unit, 64, 0.5F}},
                                                         {{0, x, 1.0F}, {64, x + unit, 0.0F}, {64, x, 0.5F}}});
+                             finding.require(stream.fragments > 10, "centres are covered");
                              finding.require(all_finite(stream), "within [0,1]");
                          }
                          finding.show(

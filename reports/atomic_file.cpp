@@ -66,7 +66,7 @@ void remove_noted(const fs::path& directory, const fs::path& name) {
 
 } // namespace
 
-void write_file(const fs::path& path, std::string_view text) {
+void write_file(const fs::path& path, std::string_view text, bool noted) {
     sim::UnfinishedFile file(path);
     const int descriptor = ::open(file.temporary().c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
     if (descriptor < 0) cannot_write(path, errno);
@@ -74,7 +74,7 @@ void write_file(const fs::path& path, std::string_view text) {
     // Some file systems notice only here that the disk is full.
     if (::close(descriptor) != 0 && error == 0) error = errno;
     if (error != 0) cannot_write(path, error);
-    note_file(path);
+    if (noted) note_file(path);
     error = file.commit();
     if (error != 0) cannot_write(path, error);
 }

@@ -9,7 +9,8 @@ namespace reports {
 
 /// Writes a whole file; where its folder, or the one above, belongs to a run, it is noted there. Throws sim::InputError
 /// "PATH: cannot be written: REASON".
-void write_file(const std::filesystem::path& path, std::string_view text);
+/// @param noted false: the file outlives the runs, as what is kept to be continued
+void write_file(const std::filesystem::path& path, std::string_view text, bool noted = true);
 
 /// Makes `directory` ready for the files of one run: what an earlier run wrote there with write_file() is removed, and
 /// what this one writes, there and one folder deeper, is noted in ".ropsim-files". Other files stay. Throws as

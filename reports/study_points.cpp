@@ -155,7 +155,7 @@ void StudyPoints::keep(const std::string& key, const std::vector<StudyValue>& va
     ordered_json list = ordered_json::array();
     for (const StudyValue& value : values) list.push_back(value_json(value));
     write_file(file_of(key),
-               ordered_json({{"format", format}, {"key", key}, {"values", std::move(list)}}).dump() + "\n");
+               ordered_json({{"format", format}, {"key", key}, {"values", std::move(list)}}).dump() + "\n", false);
     const std::lock_guard lock(mutex_);
     kept_.insert(key);
 }

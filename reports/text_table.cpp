@@ -14,8 +14,8 @@ std::string line_of(const std::vector<std::string>& cells, const std::vector<Tex
     std::string line;
     for (const std::size_t i : block) {
         if (i != block.front()) line += "  ";
-        line += columns[i].is_text ? fmt::format("{:<{}}", cells[i], widths[i])
-                                   : fmt::format("{:>{}}", cells[i], widths[i]);
+        const std::string cell = cells[i].size() > widths[i] ? cells[i].substr(0, widths[i] - 1) + "~" : cells[i];
+        line += columns[i].is_text ? fmt::format("{:<{}}", cell, widths[i]) : fmt::format("{:>{}}", cell, widths[i]);
     }
     line.erase(line.find_last_not_of(' ') + 1);
     return line;
@@ -50,6 +50,12 @@ std::string text_table(const std::vector<TextColumn>& columns, const std::vector
     for (const auto& row : rows) {
         CHECK(row.size() == columns.size());
         for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+    }
+    if (style.columns < TerminalStyle::widest && widths.size() > 1) {
+        // The first column stands beside every other one: it has the room that the widest of them leaves.
+        constexpr std::size_t least = 8;
+        const std::size_t other = *std::max_element(widths.begin() + 1, widths.end());
+        widths[0] = std::min(widths[0], std::max(least, style.columns - std::min(style.columns, other + 2)));
     }
     const bool with_units =
         std::any_of(units.begin(), units.end(), [](const std::string& unit) { return !unit.empty(); });

@@ -20,7 +20,8 @@ struct TextColumn {
 };
 
 /// Columns as wide as their widest cell, two blanks between them; every row has one cell per column. On terminals
-/// narrower than usual a table that is too wide continues below, with its first column again.
+/// narrower than usual a table that is too wide continues below, with its first column again, and cut ("~") where it
+/// must.
 std::string text_table(const std::vector<TextColumn>& columns, const std::vector<std::vector<std::string>>& rows,
                        TerminalStyle style);
 

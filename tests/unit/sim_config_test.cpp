@@ -172,7 +172,8 @@ TEST(Config, SyntaxErrorsNameTheirPlace) {
 }
 
 TEST(Config, FilesThatCannotBeReadAreNamed) {
-    EXPECT_EQ(error_of([] { Config::from_toml_file("/nowhere/g70.toml"); }), "/nowhere/g70.toml: there is no such file");
+    EXPECT_EQ(error_of([] { Config::from_toml_file("/nowhere/g70.toml"); }),
+              "/nowhere/g70.toml: there is no such file");
     EXPECT_EQ(error_of([] { Config::from_toml_file("/"); }), "/: expected a file, got a folder");
     const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "sim_config_test.toml";
     std::ofstream(path) << "[rop]\ntiles = 9\n";

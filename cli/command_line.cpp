@@ -295,8 +295,9 @@ struct Parser {
         add_stability(*app.add_subcommand("stability", "Stiff and extreme cases beside exact arithmetic"), stability);
         command = app.add_subcommand("describe", "Say what can be chosen and what the numbers mean");
         command
-            ->add_option("topic", describe.topic,
-                         "gpus, designs, programs, workloads, generators, preparations, studies, stability, ... or a name")
+            ->add_option(
+                "topic", describe.topic,
+                "gpus, designs, programs, workloads, generators, preparations, studies, stability, ... or a name")
             ->type_name("TOPIC");
         command->add_flag("--json", describe.json, "Print one JSON document");
         command->add_flag("--names", describe.names, "Print names only, one a line");
@@ -327,32 +328,29 @@ std::vector<std::string> option_names(const CLI::App& app) {
     return names;
 }
 
-std::vector<std::string> subcommand_names(const CLI::App& app) {
+std::vector<std::string> subcommands(const CLI::App& app) {
     std::vector<std::string> names;
     for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
         names.push_back(command->get_name());
     return names;
 }
 
-std::string place_of(const CLI::App& command) {
-    return command.get_parent() == nullptr ? "" : command.get_name() + ": ";
-}
-
 // What nothing took: a mistyped option, or one argument too many.
 void refuse_extras(const CLI::App& command) {
     const std::vector<std::string> extras = command.remaining();
     if (extras.empty()) return;
+    const std::string place = command.get_parent() == nullptr ? "" : command.get_name() + ": ";
     const auto is_option = [](const std::string& word) { return word.size() > 1 && word.front() == '-'; };
     const auto option = std::find_if(extras.begin(), extras.end(), is_option);
     if (option != extras.end()) {
         const std::string name = option->substr(0, option->find('='));
-        throw UsageError(fmt::format("{}unknown option {}{}", place_of(command), name,
-                                     sim::did_you_mean(name, option_names(command))));
+        throw UsageError(
+            fmt::format("{}unknown option {}{}", place, name, sim::did_you_mean(name, option_names(command))));
     }
     if (command.get_parent() == nullptr)
         throw UsageError(fmt::format("unknown subcommand '{}'{}", extras.front(),
-                                     sim::did_you_mean(extras.front(), subcommand_names(command))));
-    throw UsageError(fmt::format("{}unexpected argument '{}'", place_of(command), extras.front()));
+                                     sim::did_you_mean(extras.front(), subcommands(command))));
+    throw UsageError(fmt::format("{}unexpected argument '{}'", place, extras.front()));
 }
 
 std::string one_line(std::string text) {
@@ -396,8 +394,7 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
     if (app.got_subcommand("sensitivity")) return parser.sensitivity;
     if (app.got_subcommand("stability")) return parser.stability;
     if (app.got_subcommand("describe")) return parser.describe;
-    throw UsageError(
-        fmt::format("expected a subcommand: {}; see ropsim --help", fmt::join(subcommand_names(app), ", ")));
+    throw UsageError(fmt::format("expected a subcommand: {}; see ropsim --help", fmt::join(subcommands(app), ", ")));
 }
 
 } // namespace cli

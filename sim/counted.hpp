@@ -9,8 +9,8 @@ namespace sim {
 
 std::string with_commas(std::uint64_t number); ///< 1234567 -> "1,234,567"
 
-/// "1 triangle", "2,000 triangles": the number, and what is counted in singular or plural. The last word of `noun`,
-/// which is in the singular, takes the plural: vertices, passes, geometries.
+/// "1 message", "2,000 messages": the number, and what is counted in singular or plural. The last word of `noun`,
+/// which is in the singular, takes the plural.
 std::string counted(std::uint64_t number, std::string_view noun);
 
 } // namespace sim

@@ -82,7 +82,7 @@ TEST(CliWords, CASE_F5_NotesReachTheTerminal) {
     const std::size_t notes = table.out.find("\nNotes:\n");
     ASSERT_NE(notes, std::string::npos) << table.out;
     EXPECT_GT(notes, table.out.find("blender"));
-    for (const char* word : {"extension", "animation", "left out"}) {
+    for (const char* word : {"extension", "animations (1)", "left out"}) {
         EXPECT_EQ(times(table.out.substr(notes), word), 1U) << word << table.out;
     }
     const ProgramOutcome document = run_program(with(arguments, {"--json"}));
@@ -92,7 +92,7 @@ TEST(CliWords, CASE_F5_NotesReachTheTerminal) {
         if (other.front() != "geometry") other = with(other, {"--size", "16x16", "--no-cache", "--no-images"});
         const ProgramOutcome outcome = run_program(other);
         if (outcome.error.find("ray tracing") != std::string::npos) continue;
-        EXPECT_EQ(times(outcome.out, "animation"), 1U) << command << outcome.out << outcome.error;
+        EXPECT_EQ(times(outcome.out, "animations (1)"), 1U) << command << outcome.out << outcome.error;
     }
 }
 

@@ -113,7 +113,7 @@ RunResult racy_run() {
                  {5, 2, HazardClass::h3_stale_line, HazardKind::incoherence, 9, 4, 2, 120, 110}};
     run.max_staleness = 2;
     run.mean_staleness = 1.5;
-    run.lost_updates = run.wrong_pixels = run.lost_fragments = 2;
+    run.lost_updates = run.wrong_pixels = run.wrong_because.hazard = run.lost_fragments = 2;
     run.layers[1].missing = 2;
     run.hazard_mask.resize(std::size_t{width} * height);
     run.wrong_mask.resize(std::size_t{width} * height);

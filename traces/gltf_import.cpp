@@ -1,6 +1,7 @@
 #include "traces/gltf_import.hpp"
 
 #include "sim/check.hpp"
+#include "sim/counted.hpp"
 #include "traces/gltf/accessors.hpp"
 #include "traces/gltf/document.hpp"
 #include "traces/gltf/geometry.hpp"
@@ -41,11 +42,15 @@ class Importer {
         scene_.lights = gltf::read_lights(document_, hierarchy_);
         geometries_.add_notes(document_.notes);
         if (left_out_ > 0)
-            document_.notes.push_back(fmt::format("{} draws of points and lines are left out", left_out_));
+            document_.notes.push_back(fmt::format("{} of points and lines {} left out", sim::counted(left_out_, "draw"),
+                                                  left_out_ == 1 ? "is" : "are"));
         if (without_place_ > 0)
+            document_.notes.push_back(fmt::format("{} of primitives without POSITION {} left out",
+                                                  sim::counted(without_place_, "draw"),
+                                                  without_place_ == 1 ? "is" : "are"));
+        if (hidden_ > 0)
             document_.notes.push_back(
-                fmt::format("{} draws of primitives without POSITION are left out", without_place_));
-        if (hidden_ > 0) document_.notes.push_back(fmt::format("{} nodes are not visible", hidden_));
+                fmt::format("{} not visible", hidden_ == 1 ? "1 node is" : sim::counted(hidden_, "node") + " are"));
         const auto has_triangles = [&](const pipeline::Draw& draw) {
             return scene_.resources->geometries[draw.geometry].triangle_count() > 0;
         };

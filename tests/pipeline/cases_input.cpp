@@ -140,7 +140,7 @@ TEST(InputCases, CASE_F15) {
     const json result = compared(input("no_position.glb"));
     ASSERT_FALSE(result.is_null());
     EXPECT_EQ(result["designs"][0]["fragments"], 1024);
-    EXPECT_NE(notes_of(result).find("1 draws of primitives without POSITION are left out"), std::string::npos);
+    EXPECT_NE(notes_of(result).find("1 draw of primitives without POSITION is left out"), std::string::npos);
 }
 
 } // namespace cases_input_test

@@ -97,7 +97,7 @@ TEST(GltfImport, StripsAndFansKeepTheirTopologyAndLinesAreLeftOut) {
     EXPECT_EQ(scene.triangles, 7U);
     EXPECT_EQ(scene.triangles_drawn, 7U);
     ASSERT_EQ(scene.notes.size(), 1U);
-    EXPECT_EQ(scene.notes[0], "1 draws of points and lines are left out");
+    EXPECT_EQ(scene.notes[0], "1 draw of points and lines is left out");
 }
 
 TEST(GltfImport, SparseElementsReplaceThoseOfTheBase) {

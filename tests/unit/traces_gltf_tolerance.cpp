@@ -29,7 +29,7 @@ TEST(GltfTolerance, FilesWithoutTrianglesSayWhatTheyHave) {
     GltfFile file = triangle_file();
     file.json["meshes"][0]["primitives"][0]["mode"] = 0;
     const std::string error = file.error();
-    EXPECT_TRUE(error.ends_with("; 1 draws of points and lines are left out")) << error;
+    EXPECT_TRUE(error.ends_with("; 1 draw of points and lines is left out")) << error;
 }
 
 TEST(GltfTolerance, WholeNumbersMayHaveAFraction) {

@@ -117,11 +117,20 @@ tinygltf::Model parsed(const std::string& name, const json& root) {
         fmt::format("{}: expected valid glTF 2.0: {}", name, one_line(error.substr(0, error.find('\n')))));
 }
 
+std::string why_unread(const std::filesystem::path& path) {
+    std::error_code error;
+    const std::filesystem::file_status status = std::filesystem::status(path, error);
+    if (!std::filesystem::exists(status)) return "there is no such file";
+    if (std::filesystem::is_directory(status)) return "expected a file, got a folder";
+    return std::filesystem::file_size(path, error) > largest_file ? "expected a file of at most 2 GiB"
+                                                                  : "cannot be read";
+}
+
 } // namespace
 
 Document::Document(const std::filesystem::path& path) : name_(path.string()) {
     const std::optional<Bytes> bytes = read_file(path);
-    if (!bytes) throw sim::InputError(fmt::format("{}: expected a readable file of at most 2 GiB", name_));
+    if (!bytes) throw sim::InputError(fmt::format("{}: {}", name_, why_unread(path)));
     ContentHash hash;
     hash.add(std::as_bytes(std::span(*bytes)));
     const Parts parts = parts_of(name_, *bytes);

@@ -13,8 +13,6 @@ namespace traces::gltf {
 
 namespace {
 
-constexpr std::uint64_t largest_file = 1ULL << 31U;
-
 std::uint32_t u32_at(const Bytes& bytes, std::size_t offset) {
     std::uint32_t value = 0;
     std::memcpy(&value, bytes.data() + offset, sizeof value);

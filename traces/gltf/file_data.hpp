@@ -15,6 +15,8 @@ namespace traces::gltf {
 
 using Bytes = std::vector<unsigned char>;
 
+inline constexpr std::uint64_t largest_file = std::uint64_t{1} << 31U; ///< bytes
+
 /// A regular file of at most 2 GiB, or nothing.
 std::optional<Bytes> read_file(const std::filesystem::path& path);
 

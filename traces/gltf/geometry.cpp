@@ -1,5 +1,7 @@
 #include "traces/gltf/geometry.hpp"
 
+#include "sim/counted.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_inverse.hpp>
@@ -87,9 +89,9 @@ glm::mat4 Geometries::skin_to_world(std::uint32_t geometry) const {
 
 void Geometries::add_notes(std::vector<std::string>& notes) const {
     if (raw_colours_ > 0)
-        notes.push_back(fmt::format("COLOR_0 of integers that are not normalized ({} primitives), which glTF does not "
+        notes.push_back(fmt::format("COLOR_0 of integers that are not normalized ({}), which glTF does not "
                                     "know: they are read as if they were",
-                                    raw_colours_));
+                                    sim::counted(raw_colours_, "primitive")));
 }
 
 Geometry Geometries::read(const Source& source) {

@@ -174,7 +174,7 @@ TEST(Extremes, OneHugeTriangle) {
 TEST(Extremes, LargeViewportWithOneSmallTriangle) {
     const Replay replay(screen_scene({{{1000, 1000, 0.5F}, {1000, 1010, 0.5F}, {1010, 1000, 0.5F}}}),
                         {.width = 2048, .height = 2048});
-    for (const std::string& design : replay.designs()) {
+    for (const std::string design : {"existing", "blender", "multipass", "linked-list"}) { // one of each kind of memory
         const RunResult run = replay.run(design);
         EXPECT_EQ(run.wrong_pixels, 0U);
         EXPECT_EQ(counter(support::pass_named(run, "geometry").counters, "raster/fragments"), 45U);

@@ -53,7 +53,8 @@ class TextureCache {
 
     /// Line `part` (target / line_targets) of block `block`.
     std::uint32_t find_kbuffer(std::uint32_t block, std::uint32_t part) { return find(kbuffer_tag(block, part)); }
-    /// Reserves a line for the values that are asked for now, which later lookups join; none as for textures.
+    /// Reserves a line for the values that are asked for now, which later lookups join; none
+    /// when every way of the set is pending.
     std::uint32_t reserve_kbuffer(std::uint32_t block, std::uint32_t part) { return reserve(kbuffer_tag(block, part)); }
     /// Bytes of pixel `pixel`, render target `target` within the line; 4 floats.
     float* data(std::uint32_t index, std::uint32_t pixel, std::uint32_t target) {

@@ -1,73 +1,18 @@
 #include "cli/command_line.hpp"
 
+#include "cli/frame_options.hpp"
 #include "cli/help_texts.hpp"
 #include "reports/result.hpp"
 #include "sim/suggest.hpp"
+#include "traces/workloads.hpp"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace cli {
 
 namespace {
-
-void add_scene(CLI::App& command, std::string& scene) {
-    command
-        .add_option("scene", scene,
-                    "glTF file (.glb, .gltf), FILE#N for its scene number N, tetrahedra (.vtk, .tetm), or "
-                    "gen:NAME?key=value&key=value; +ground behind it lays a floor below the scene")
-        ->required()
-        ->type_name("SCENE");
-}
-
-void add_size(CLI::App& command, std::string& size) {
-    command.add_option("--size", size, "Pixels of the frame (default 512x512)")->type_name("WxH");
-}
-
-void add_camera(CLI::App& command, std::string& camera) {
-    command
-        .add_option(
-            "--camera", camera,
-            "auto, the number of a camera of the scene, or ex,ey,ez,tx,ty,tz,fovy (eye, target, vertical degrees)")
-        ->type_name("CAMERA");
-}
-
-void add_threads(CLI::App& command, std::string& threads) {
-    command.add_option("--threads", threads, "Threads (default: all cores); results do not depend on it")
-        ->type_name("N");
-}
-
-void add_frame_options(CLI::App& command, FrameOptions& options) {
-    add_scene(command, options.scene);
-    command.add_option("--gpu", options.gpu, "Name of a GPU or a .toml file (default neutral)")->type_name("GPU");
-    command.add_option("--workload", options.workload, "Rendering method (default transparency)")->type_name("NAME");
-    command.add_option("--k", options.k, "Entries per pixel of the k-buffer (default 4)")->type_name("K");
-    command.add_option("--entry", options.entry, "What an entry holds: rgbz, z or zo (default rgbz)")
-        ->type_name("KIND");
-    command
-        .add_option("--program", options.program,
-                    "What a fragment does to its pixel: nearest-k, order-and-blend, mlab, or a file *.kb (default "
-                    "nearest-k)")
-        ->type_name("NAME");
-    add_size(command, options.size);
-    command.add_option("--samples", options.samples, "Samples of a pixel, against jagged edges: 1, 4 or 8 (default 1)")
-        ->type_name("N");
-    add_camera(command, options.camera);
-    command
-        .add_option("--light", options.light,
-                    "Square light of soft-shadows: auto, the number of a spot light of the scene, or px,py,pz,tx,ty,tz "
-                    "(place and target)")
-        ->type_name("LIGHT");
-    command.add_option("--seed", options.seed, "Seed of everything random in the hardware (default 1)")->type_name("N");
-    add_threads(command, options.threads);
-    command
-        .add_option("--set", options.settings,
-                    "Overrides a number of the GPU, of a design or of the workload (workload.KEY); may be repeated")
-        ->type_name("PATH=VALUE")
-        ->allow_extra_args(false)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-}
 
 void add_output_options(CLI::App& command, OutputOptions& options) {
     command.add_option("--out", options.directory, "Folder for result.json, tables, report.html and pictures")
@@ -78,11 +23,9 @@ void add_output_options(CLI::App& command, OutputOptions& options) {
 
 void add_truth(CLI::App& command, TruthCommand& options) {
     add_scene(command, options.scene);
-    command
-        .add_option("--workload", options.workload,
-                    "Rendering method: transparency, translucency, csg, opaque or soft-shadows (default transparency)")
-        ->type_name("NAME");
-    command.add_option("--k", options.k, "Entries per pixel of the k-buffer that --check compares")->type_name("K");
+    add_workload(command, options.workload,
+                 fmt::format("Rendering method, one of {}",
+                             ids_of([](const traces::Workload& one) { return bool(one.truth); })));
     add_size(command, options.size);
     add_camera(command, options.camera);
     command.add_option("--set", options.settings, "Sets a parameter of the workload (workload.KEY); may be repeated")
@@ -107,7 +50,8 @@ void add_truth(CLI::App& command, TruthCommand& options) {
     command.add_flag("--no-images", options.no_images, "Write no pictures (OpenImageIO is not loaded)");
     command.add_flag("--no-cache", options.no_cache,
                      "Neither look for an earlier run's rays in ~/.cache/ropsim nor keep these there");
-    command.footer(truth_help);
+    add_parameters(command, options.parameters);
+    command.footer(with_examples(truth_help, "truth"));
 }
 
 void add_accuracy(CLI::App& command, AccuracyCommand& options) {
@@ -124,8 +68,14 @@ void add_accuracy(CLI::App& command, AccuracyCommand& options) {
     command.add_option("--rays", options.rays, "Rays of the truth to the light from each point (default 1000)")
         ->type_name("N");
     command
+        .add_option(
+            "--against", options.against,
+            "Measure against another setting of the workload, in submission order, instead of ray-traced truth; "
+            "workload=NAME among the settings: against another method")
+        ->type_name("'KEY=VALUE ...'");
+    command
         .add_option("--averaged", options.averaged,
-                    "Also the mean of 4, 16, 64 ... hard shadows, up to N (soft-shadows)")
+                    fmt::format("Also the mean of 4, 16, 64 ... frames, up to N ({})", averaged_frames()))
         ->type_name("N");
     command
         .add_option("--out", options.output.directory, "Folder for accuracy.json, a table, report.html and pictures")
@@ -134,7 +84,7 @@ void add_accuracy(CLI::App& command, AccuracyCommand& options) {
     command.add_flag("--no-images", options.output.no_images, "Write no pictures (OpenImageIO is not loaded)");
     command.add_flag("--no-cache", options.no_cache,
                      "Neither look for an earlier run's rays in ~/.cache/ropsim nor keep these there");
-    command.footer(accuracy_help);
+    command.footer(with_examples(accuracy_help, "accuracy"));
 }
 
 void add_geometry(CLI::App& command, GeometryCommand& options) {

@@ -54,7 +54,7 @@ _ropsim() {
         --parameters) _ropsim_list "$(_ropsim_names params)"; return ;;
         --filter) _ropsim_list "$(_ropsim_names stability)"; return ;;
         --factor | --equal-area) return ;;
-        --k | --seed | --threads | --layers | --light | --rays | --sweep | --averaged) return ;;
+        --k | --seed | --threads | --layers | --light | --rays | --sweep | --against | --averaged) return ;;
     esac
     local measure="--gpus --fidelity --threads --json --help"
     case $command in
@@ -64,10 +64,10 @@ _ropsim() {
             [[ $word == -* ]] && _ropsim_words "--designs --parameters --factor ${frame/ --no-images/}" ||
                 _ropsim_files glb gltf ;;
         truth)
-            [[ $word == -* ]] && _ropsim_words "--workload --k --size --camera --set --layers --light --rays --seed --threads --check --out --json --no-images --no-cache --help" ||
+            [[ $word == -* ]] && _ropsim_words "--workload --k --entry --program --size --camera --set --layers --light --rays --seed --threads --check --out --json --no-images --no-cache --help" ||
                 _ropsim_files glb gltf ;;
         accuracy)
-            [[ $word == -* ]] && _ropsim_words "--design --sweep --rays --averaged --no-cache $frame" || _ropsim_files glb gltf ;;
+            [[ $word == -* ]] && _ropsim_words "--design --sweep --rays --against --averaged --no-cache $frame" || _ropsim_files glb gltf ;;
         geometry)
             [[ $word == -* ]] && _ropsim_words "--gpu --prepare --submission --reads --fidelity --seed --set --export --out --json --help" ||
                 _ropsim_files glb gltf ;;

@@ -32,8 +32,6 @@ inline constexpr const char* run_help = R"(Examples:
 
 inline constexpr const char* truth_help = R"(Examples:
   ropsim truth scene.glb --out truth
-  ropsim truth gen:slabs --workload translucency --set workload.sigma=2 --check
-  ropsim truth gen:csg --workload csg --set 'workload.expression=A & !B' --check
   ropsim truth scene.glb --light 0,9,0,1,0,0,0,0,1 --rays 1000 --size 800x600 --out shadows)";
 
 inline constexpr const char* geometry_help = R"(Examples:
@@ -79,8 +77,7 @@ inline constexpr const char* describe_help = R"(Examples:
   ropsim describe --names designs      names only, one a line)";
 
 inline constexpr const char* accuracy_help = R"(Examples:
-  ropsim accuracy scene.glb+ground --workload soft-shadows --out accuracy
-  ropsim accuracy scene.glb --workload transparency --sweep k=1,2,4,8,16
-  ropsim accuracy scene.glb+ground --workload soft-shadows --sweep layers=1,2,3 --sweep samples=169,441)";
+  ropsim accuracy scene.glb --out accuracy
+  ropsim accuracy scene.glb --sweep k=1,2,4 --against 'k=32 program=mlab')";
 
 } // namespace cli

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <map>
+#include <sstream>
 #include <string_view>
 
 namespace cli {
@@ -84,7 +85,7 @@ E parse_choice(std::string_view option, const std::string& text) {
     return static_cast<E>(found - names.begin());
 }
 
-std::optional<reports::SquareLight> parse_light(const std::string& text) {
+std::optional<traces::SquareLight> parse_light(const std::string& text) {
     if (text.empty()) return std::nullopt;
     std::vector<double> numbers;
     for (const std::string& part : split(text, "--light"))
@@ -94,7 +95,36 @@ std::optional<reports::SquareLight> parse_light(const std::string& text) {
                                           "got '{}'",
                                           text));
     const auto vector = [&](std::size_t i) { return glm::dvec3(numbers[i], numbers[i + 1], numbers[i + 2]); };
-    return reports::SquareLight{vector(0), vector(3), vector(6)};
+    return traces::SquareLight{vector(0), vector(3), vector(6)};
+}
+
+std::vector<std::string> settings_of(const ParameterValues& parameters) {
+    std::vector<std::string> settings;
+    for (const auto& [name, value] : parameters)
+        if (!value.empty()) settings.push_back(fmt::format("{}={}", name, value));
+    return settings;
+}
+
+// "key=value key=value"; a word without = belongs to the value before it. The key `workload` names another method.
+std::optional<reports::Rival> parse_rival(const std::string& text) {
+    if (text.empty()) return std::nullopt;
+    std::vector<std::string> settings;
+    std::istringstream words(text);
+    for (std::string word; words >> word;)
+        if (const std::size_t equals = word.find('='); equals != std::string::npos && equals != 0)
+            settings.push_back(word);
+        else if (settings.empty())
+            throw sim::InputError(fmt::format("--against: expected KEY=VALUE KEY=VALUE ..., got '{}'", text));
+        else
+            settings.back() += " " + word;
+    reports::Rival rival;
+    constexpr std::string_view workload = "workload=";
+    for (const std::string& setting : settings)
+        if (setting.starts_with(workload))
+            rival.workload = setting.substr(workload.size());
+        else
+            rival.settings.push_back(setting);
+    return rival;
 }
 
 std::vector<std::string> parse_designs(std::string_view text) {
@@ -137,10 +167,7 @@ reports::ComparisonRequest request_of(const FrameOptions& options, const std::st
     request.only_able_designs = designs.empty() || designs == "all";
     parse_size(options.size, request);
     request.samples = parse_samples(options.samples);
-    if (!options.k.empty()) request.workload_settings.push_back("k=" + options.k);
-    if (!options.entry.empty()) request.workload_settings.push_back("entry=" + options.entry);
-    if (!options.program.empty()) request.workload_settings.push_back("program=" + options.program);
-    if (!options.light.empty()) request.workload_settings.push_back("light=" + options.light);
+    request.workload_settings = settings_of(options.parameters);
     constexpr std::string_view workload = "workload.";
     expect_each_once(options.settings);
     for (const std::string& setting : options.settings)
@@ -173,7 +200,7 @@ reports::TruthRequest request_of(const TruthCommand& command) {
     request.camera = command.camera;
     request.workload = command.workload;
     parse_size(command.size, request);
-    if (!command.k.empty()) request.workload_settings.push_back("k=" + command.k);
+    request.workload_settings = settings_of(command.parameters);
     constexpr std::string_view workload = "workload.";
     expect_each_once(command.settings);
     for (const std::string& setting : command.settings) {
@@ -219,6 +246,7 @@ reports::AccuracyRequest request_of(const AccuracyCommand& command) {
     request.sampling.rays = parse_count("--rays", command.rays, most_rays);
     request.sampling.seed = request.comparison.seed;
     if (!command.averaged.empty()) request.averaged = parse_count("--averaged", command.averaged, most_lights);
+    request.against = parse_rival(command.against);
     request.pictures = !command.output.directory.empty() && !command.output.no_images;
     request.use_cache = !command.no_cache;
     return request;

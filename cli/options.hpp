@@ -8,22 +8,24 @@
 #include "reports/sensitivity/sensitivity.hpp"
 #include "reports/truth/truth_run.hpp"
 
+#include <list>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
 namespace cli {
 
+/// Of options that stand for parameters of workloads (traces::ParameterOption): name and value, "" where not given.
+using ParameterValues = std::list<std::pair<std::string, std::string>>;
+
 /// What to draw on what; common to several subcommands. Empty texts stand for the default.
 struct FrameOptions {
     std::string scene;
     std::string gpu = "neutral";
-    std::string workload = "transparency";
-    std::string k;
-    std::string entry;
-    std::string program;
-    std::string light;
+    std::string workload = traces::usual_workload();
+    ParameterValues parameters;
     std::string size = "512x512";
     std::string samples = "1";
     std::string camera = "auto";
@@ -74,8 +76,8 @@ struct GeometryCommand {
 
 struct TruthCommand {
     std::string scene;
-    std::string workload = "transparency";
-    std::string k;
+    std::string workload = traces::usual_workload();
+    ParameterValues parameters;
     std::string size = "512x512";
     std::string camera = "auto";
     std::vector<std::string> settings; ///< of --set
@@ -97,7 +99,8 @@ struct AccuracyCommand {
     std::string design = "multipass";
     std::vector<std::string> sweep; ///< KNOB=VALUE,VALUE
     std::string rays = "1000";
-    std::string averaged; ///< number of lights; empty: none
+    std::string against;  ///< "KEY=VALUE KEY=VALUE"; empty: ray-traced truth
+    std::string averaged; ///< number of frames; empty: none
     bool no_cache = false;
 };
 

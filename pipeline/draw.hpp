@@ -228,12 +228,6 @@ struct View {
     std::uint64_t samples_drawn() const { return std::uint64_t{pixels()} * samples; }
 };
 
-/// The points centre + a * u + b * v with a and b in [-1,1], in world space; u and v are orthogonal.
-struct SquareLight {
-    glm::dvec3 centre{0.0};
-    glm::dvec3 u{0.0}, v{0.0}; ///< half edges
-};
-
 } // namespace pipeline
 
 template <>

@@ -106,8 +106,6 @@ struct Frame {
     View view; ///< of the eye
     /// Of the passes that fill the k-buffer, where they see the scene from elsewhere: from a light.
     std::optional<View> kbuffer_view;
-    /// Whose visible share the alpha of the picture is.
-    std::optional<SquareLight> light;
     /// Index into `draws` of the triangle that covers the screen, for the screen passes of `resolve`.
     std::optional<std::uint32_t> screen_draw;
     Submission submission = Submission::buffers;

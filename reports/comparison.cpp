@@ -10,7 +10,6 @@
 #include "reports/numbers.hpp"
 #include "reports/stopwatch.hpp"
 #include "traces/camera.hpp"
-#include "traces/workloads.hpp"
 
 #include <array>
 #include <fmt/format.h>
@@ -23,8 +22,7 @@ namespace reports {
 namespace {
 
 void read_scene(const ComparisonRequest& request, ComparisonInput& input) {
-    traces::WorkloadOptions options;
-    for (const std::string& setting : request.workload_settings) options.set(setting);
+    const auto options = traces::WorkloadOptions::of(request.workload_settings);
     const traces::Scene scene = traces::load_scene(request.scene);
     std::vector<std::string> notes;
     pipeline::View view = traces::make_view(scene, request.camera, request.width, request.height, &notes);

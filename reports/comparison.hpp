@@ -8,6 +8,7 @@
 #include "reports/design_variant.hpp"
 #include "sim/observer.hpp"
 #include "traces/scene.hpp"
+#include "traces/workloads.hpp"
 
 #include <atomic>
 #include <memory>
@@ -24,7 +25,7 @@ struct ComparisonRequest {
     std::string camera = "auto"; ///< as traces::make_view takes it
     std::uint32_t width = 512, height = 512;
     std::uint32_t samples = 1; ///< of a pixel: 1, 4 or 8
-    std::string workload = "transparency";
+    traces::WorkloadChoice workload;
     std::vector<std::string> workload_settings; ///< "key=value"
     std::string gpu = "neutral";
     std::vector<std::string> gpu_settings; ///< "section.key=value"; also parameters of designs

@@ -7,6 +7,7 @@
 #include "reports/csv.hpp"
 #include "reports/geometry/validation.hpp"
 #include "reports/terminal_table.hpp"
+#include "traces/workloads.hpp"
 
 #include <map>
 #include <nlohmann/json.hpp>
@@ -52,7 +53,7 @@ struct Study {
     // Designs only.
     std::string size = "256x256"; ///< may name variables
     std::string samples = "1";    ///< of a pixel; may name variables
-    std::string workload = "transparency";
+    std::string workload = traces::usual_workload();
     std::uint32_t seeds = 1; ///< runs of each design, with the seeds 1, 2, ...; {seed} names them
 
     bool of_designs() const { return !series.empty() && !series.front().design.empty(); }

@@ -99,6 +99,17 @@ pipeline::View AreaLight::view(std::uint32_t resolution) const {
             glm::mat4(glm::frustumRH_NO(-half, half, -half, half, near, far)), resolution, resolution};
 }
 
+glm::dvec3 spread_over(const SquareLight& light, std::uint32_t i, std::uint32_t count) {
+    std::uint32_t x = 0, y = 0, parts = 1;
+    for (; count > 1; count /= 4, parts *= 2) {
+        x = x * 2 + i % 2;
+        y = y * 2 + i / 2 % 2;
+        i /= 4;
+    }
+    const auto middle = [parts](std::uint32_t at) { return (2.0 * at + 1.0) / parts - 1.0; };
+    return light.centre + middle(x) * light.u + middle(y) * light.v;
+}
+
 AreaLight make_area_light(const Scene& scene, const std::string& light, double size, const std::string& place) {
     AreaLight result;
     const auto numbers = numbers_in(light);

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "pipeline/draw.hpp"
+#include "traces/rays.hpp"
 #include "traces/scene.hpp"
 
 #include <cstdint>
@@ -27,7 +28,12 @@ struct AreaLight {
     }
     /// From the middle of the light onto a square map.
     pipeline::View view(std::uint32_t resolution) const;
+    SquareLight square() const { return {centre, right * (width / 2.0), up * (width / 2.0)}; }
 };
+
+/// A place of number `i` of `count` point lights, a power of 4, that share the area of a light: the middles of equal
+/// parts, in an order in which the first 4, 16 ... are evenly spread, too.
+glm::dvec3 spread_over(const SquareLight& light, std::uint32_t i, std::uint32_t count);
 
 /// The light of a scene. `light` is one of
 ///   auto             the scene's first spot light; without one, a light above the scene, to the right and in front

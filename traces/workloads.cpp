@@ -13,6 +13,12 @@ namespace traces {
 
 void WorkloadOptions::set(std::string_view assignment) { add_assignment(values, assignment, "workload"); }
 
+WorkloadOptions WorkloadOptions::of(const std::vector<std::string>& assignments) {
+    WorkloadOptions options;
+    for (const std::string& assignment : assignments) options.set(assignment);
+    return options;
+}
+
 const std::vector<Workload>& workloads() {
     static const std::vector<Workload> list = {transparency_workload(),   opaque_workload(),       blended_workload(),
                                                geometry_workload(),       translucency_workload(), csg_workload(),
@@ -42,11 +48,15 @@ pipeline::Frame kbuffer_frame(pipeline::Frame frame, pipeline::FragmentColour co
 }
 
 Workload taking(Workload workload, void (*change)(WorkloadOptions&, const std::string&), std::string name) {
-    workload.build = [build = std::move(workload.build), change,
-                      name = std::move(name)](const Scene& scene, const pipeline::View& view, WorkloadOptions options) {
-        change(options, name);
-        return build(scene, view, options);
+    const auto changed = [change, name = std::move(name)](auto function) {
+        return [function = std::move(function), change, name](const Scene& scene, const auto& seen,
+                                                              WorkloadOptions options) {
+            change(options, name);
+            return function(scene, seen, options);
+        };
     };
+    workload.build = changed(std::move(workload.build));
+    if (workload.truth) workload.truth = changed(std::move(workload.truth));
     return workload;
 }
 
@@ -60,11 +70,24 @@ void as_list(WorkloadOptions& options, const std::string& name) {
     if (found != options.values.end() && found->is_number()) *found = nlohmann::ordered_json::array({*found});
 }
 
-pipeline::Frame build_frame(const Scene& scene, const pipeline::View& view, const std::string& workload,
+const std::string& usual_workload() { return workloads().front().id; }
+
+pipeline::Frame build_frame(const Scene& scene, const pipeline::View& view, const WorkloadChoice& workload,
                             const WorkloadOptions& options) {
-    pipeline::Frame frame = workload_named(workload).build(scene, view, options);
-    frame.workload = workload;
+    pipeline::Frame frame = workload.get().build(scene, view, options);
+    frame.workload = workload.name();
     return frame;
+}
+
+TruthMethod truth_method(const Scene& scene, const pipeline::Frame& frame, const WorkloadChoice& workload,
+                         const WorkloadOptions& options) {
+    const Workload& method = workload.get();
+    if (method.truth) return method.truth(scene, frame, options);
+    std::vector<std::string> known;
+    for (const Workload& one : workloads())
+        if (one.truth) known.push_back(one.id);
+    throw sim::InputError(
+        fmt::format("truth: expected a workload of {}, got {}", fmt::join(known, ", "), workload.name()));
 }
 
 const Workload& workload_named(const std::string& workload) {

@@ -1,8 +1,9 @@
 #include "reports/accuracy/accuracy.hpp"
 
-#include "reports/accuracy/averaged_shadows.hpp"
+#include "reports/accuracy/averaged_frames.hpp"
 #include "reports/accuracy/error_picture.hpp"
 #include "reports/remarks.hpp"
+#include "reports/stopwatch.hpp"
 #include "sim/check.hpp"
 
 #include <algorithm>
@@ -47,8 +48,8 @@ std::vector<Knobs> one_at_a_time(const traces::Workload& workload, const std::ve
 }
 
 std::vector<Knobs> plan(const AccuracyRequest& request) {
-    const traces::Workload& workload = traces::workload_named(request.comparison.workload);
-    if (workload.quality.empty())
+    const traces::Workload& workload = request.comparison.workload.get();
+    if (!request.against && (!workload.truth || workload.quality.empty()))
         throw sim::InputError(
             fmt::format("accuracy: expected a workload with a truth and knobs of quality, got '{}'", workload.id));
     if (request.sweep.empty()) return one_at_a_time(workload, request.comparison.workload_settings);
@@ -57,6 +58,13 @@ std::vector<Knobs> plan(const AccuracyRequest& request) {
             throw sim::InputError(fmt::format("--sweep: '{}' is set for all points, too", knob.parameter));
     return combinations(request.sweep);
 }
+
+// What pictures are measured against.
+struct Standard {
+    Truth truth;
+    traces::Measured measured = traces::Measured::colours;
+    bool same_rasterizer = false; ///< so that pixels at silhouettes show the same surfaces
+};
 
 TruthRun truth_of(const AccuracyRequest& request, const Supervision& supervision) {
     const ComparisonRequest& comparison = request.comparison;
@@ -74,11 +82,18 @@ TruthRun truth_of(const AccuracyRequest& request, const Supervision& supervision
     return run_truth(truth, supervision);
 }
 
+std::vector<PixelKind> kinds_of(const FramePixels& pixels, const pipeline::Frame& frame, const Standard& standard) {
+    auto kinds = kinds_of_pixels(frame.view, pixels.depth);
+    if (standard.same_rasterizer) std::replace(kinds.begin(), kinds.end(), PixelKind::silhouette, PixelKind::inner);
+    return kinds;
+}
+
 // Measures the picture, and shows it where that is wanted.
-void judge(const AccuracyRequest& request, const FramePixels& pixels, const pipeline::Frame& frame, const Truth& truth,
-           AccuracyPoint& point) {
-    if (frame.light) {
-        const auto kinds = kinds_of_pixels(frame.view, pixels.depth);
+void judge(const AccuracyRequest& request, const FramePixels& pixels, const pipeline::Frame& frame,
+           const Standard& standard, AccuracyPoint& point) {
+    const Truth& truth = standard.truth;
+    if (standard.measured == traces::Measured::light) {
+        const auto kinds = kinds_of(pixels, frame, standard);
         point.error = shadow_error(pixels.composite, truth.visibility, kinds);
         if (request.pictures)
             point.picture = shadow_error_picture(frame.view, pixels.composite, truth.visibility, kinds, point.name());
@@ -97,32 +112,83 @@ void add_notes(const SceneFacts& drawn, Accuracy& accuracy) {
         if (!knows(accuracy.scene.notes, note) && !knows(accuracy.notes, note)) accuracy.notes.push_back(note);
 }
 
-AccuracyPoint point_of(const AccuracyRequest& request, const Knobs& knobs, const Truth& truth,
-                       const Supervision& supervision, Accuracy& accuracy) {
-    ComparisonRequest one = request.comparison;
-    one.workload_settings.insert(one.workload_settings.end(), knobs.begin(), knobs.end());
-    const Comparison comparison = compare(prepare(one, supervision), supervision);
+Comparison run_of(ComparisonRequest request, const Knobs& knobs, const Supervision& supervision, Accuracy& accuracy) {
+    request.workload_settings.insert(request.workload_settings.end(), knobs.begin(), knobs.end());
+    Comparison comparison = compare(prepare(request, supervision), supervision);
     add_notes(comparison.scene, accuracy);
+    return comparison;
+}
+
+AccuracyPoint point_of(const AccuracyRequest& request, const Knobs& knobs, const Comparison& comparison,
+                       const Standard& standard) {
     const pipeline::RunResult& run = comparison.runs.front();
     AccuracyPoint point;
+    point.workload = comparison.frame->workload;
     point.knobs = knobs;
     point.sim_ms = static_cast<double>(run.cycles) / (run.core_mhz * 1000.0);
     point.host_s = run.host_seconds + comparison.host.front_end_seconds;
     point.wrong_pixels = run.wrong_pixels;
-    judge(request, comparison.pixels.front(), *comparison.frame, truth, point);
+    judge(request, comparison.pixels.front(), *comparison.frame, standard, point);
     return point;
 }
 
-void add_averages(const AccuracyRequest& request, const Truth& truth, const Supervision& supervision,
+void add_averages(const AccuracyRequest& request, const Standard& standard, const Supervision& supervision,
                   std::vector<AccuracyPoint>& points) {
-    for (const AveragedShadows& averaged : average_hard_shadows(request, supervision)) {
+    for (const AveragedFrames& averaged : average_frames(request, supervision)) {
         AccuracyPoint point;
-        point.knobs = {fmt::format("averaged={}", averaged.lights)};
+        point.workload = request.comparison.workload.name();
+        point.knobs = {fmt::format("averaged={}", averaged.frames)};
         point.sim_ms = averaged.sim_ms;
         point.host_s = averaged.host_s;
-        judge(request, averaged.pixels, *averaged.frame, truth, point);
+        judge(request, averaged.pixels, *averaged.frame, standard, point);
         points.push_back(std::move(point));
     }
+}
+
+// The request of the rival, without its own settings.
+ComparisonRequest rival_of(const AccuracyRequest& request) {
+    ComparisonRequest rival = request.comparison;
+    if (request.against->workload) {
+        rival.workload = *request.against->workload;
+        if (rival.workload.name() != request.comparison.workload.name()) rival.workload_settings.clear();
+        if (rival.workload.get().measured != request.comparison.workload.get().measured)
+            throw sim::InputError(fmt::format(
+                "--against: workloads {} and {} are not measured alike: one by its colours, the other by the "
+                "light in alpha",
+                request.comparison.workload.name(), rival.workload.name()));
+    }
+    for (const std::string& own : request.against->settings) {
+        const std::string key = own.substr(0, own.find('=') + 1);
+        std::erase_if(rival.workload_settings, [&](const std::string& shared) { return shared.starts_with(key); });
+    }
+    return rival;
+}
+
+Standard standard_of(const Comparison& rival, traces::Measured measured) {
+    const std::vector<float>& picture = rival.reference.composite;
+    if (picture.empty())
+        throw sim::InputError(fmt::format("--against: workload {} makes no picture", rival.frame->workload));
+    Standard standard{{}, measured, true};
+    Truth& truth = standard.truth;
+    truth.width = rival.width();
+    truth.height = rival.height();
+    truth.colours = picture;
+    truth.marks.resize(truth.pixels());
+    for (std::size_t alpha = 3; alpha < picture.size(); alpha += 4) truth.visibility.push_back(picture[alpha]);
+    return standard;
+}
+
+Standard traced_standard(const AccuracyRequest& request, const Supervision& supervision, Accuracy& accuracy) {
+    TruthRun truth = truth_of(request, supervision);
+    accuracy.scene = std::move(truth.scene);
+    accuracy.notes = std::move(truth.notes);
+    accuracy.truth_seconds = truth.seconds;
+    accuracy.truth_cached = truth.cached;
+    if (truth.plan.light) {
+        const std::uint32_t parts = light_parts(truth.plan.sampling.rays);
+        accuracy.rays = parts * parts;
+    }
+    return {std::move(truth.truth), request.comparison.workload.get().measured, false};
 }
 
 bool beats(double time, double error, double other_time, double other_error) {
@@ -131,7 +197,10 @@ bool beats(double time, double error, double other_time, double other_error) {
 
 } // namespace
 
-std::string AccuracyPoint::name() const { return knobs.empty() ? "as set" : fmt::format("{}", fmt::join(knobs, " ")); }
+std::string AccuracyPoint::name() const {
+    if (rival) return fmt::format("against {} {}", workload, fmt::join(knobs, " "));
+    return knobs.empty() ? "as set" : fmt::format("{}", fmt::join(knobs, " "));
+}
 
 std::vector<std::string> remarks(const Accuracy& accuracy) {
     std::vector<std::string> list;
@@ -157,24 +226,36 @@ void mark_pareto(std::vector<AccuracyPoint>& points) {
 Accuracy measure_accuracy(const AccuracyRequest& request, const Supervision& supervision) {
     const std::vector<Knobs> points = plan(request);
     Accuracy accuracy;
-    TruthRun truth = truth_of(request, supervision);
-    accuracy.workload = request.comparison.workload;
+    accuracy.workload = request.comparison.workload.name();
     accuracy.design = request.comparison.designs.front();
     accuracy.gpu = request.comparison.gpu;
-    accuracy.scene = std::move(truth.scene);
     accuracy.width = request.comparison.width;
     accuracy.height = request.comparison.height;
     accuracy.settings = request.comparison.workload_settings;
-    accuracy.notes = std::move(truth.notes);
-    accuracy.truth_seconds = truth.seconds;
-    accuracy.truth_cached = truth.cached;
-    if (truth.plan.light) {
-        const std::uint32_t parts = light_parts(truth.plan.sampling.rays);
-        accuracy.rays = parts * parts;
+    std::optional<Comparison> rival;
+    Standard standard;
+    if (request.against) {
+        const Stopwatch watch;
+        const ComparisonRequest other = rival_of(request);
+        rival = run_of(other, request.against->settings, supervision, accuracy);
+        accuracy.scene = rival->scene;
+        accuracy.notes.clear(); // they are the scene's
+        accuracy.against =
+            fmt::format("{}{}", other.workload.name() == accuracy.workload ? "" : other.workload.name() + " ",
+                        fmt::join(request.against->settings, " "));
+        standard = standard_of(*rival, request.comparison.workload.get().measured);
+        accuracy.truth_seconds = watch.seconds();
+    } else {
+        standard = traced_standard(request, supervision, accuracy);
     }
     for (const Knobs& knobs : points)
-        accuracy.points.push_back(point_of(request, knobs, truth.truth, supervision, accuracy));
-    if (request.averaged > 0) add_averages(request, truth.truth, supervision, accuracy.points);
+        accuracy.points.push_back(
+            point_of(request, knobs, run_of(request.comparison, knobs, supervision, accuracy), standard));
+    if (request.averaged > 0) add_averages(request, standard, supervision, accuracy.points);
+    if (rival) {
+        accuracy.points.push_back(point_of(request, request.against->settings, *rival, standard));
+        accuracy.points.back().rival = true;
+    }
     mark_pareto(accuracy.points);
     return accuracy;
 }

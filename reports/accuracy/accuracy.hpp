@@ -1,6 +1,7 @@
 // Error against run time of a rendering method: its pictures beside ray-traced truth, as its quality knobs turn.
 //
-// A workload declares its knobs once (traces::Workload::quality). Each point is a whole comparison of one design at one
+// A workload declares its knobs once (traces::Workload::quality). In place of the truth another setting or workload may
+// stand: how far two methods are from each other. Each point is a whole comparison of one design at one
 // setting; its time is that of the simulated GPU and, apart from it, that of this machine.
 #pragma once
 
@@ -13,21 +14,32 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace reports {
 
+/// Another setting or workload, whose picture in submission order stands for the truth.
+struct Rival {
+    std::optional<traces::WorkloadChoice> workload; ///< nothing: the same
+    std::vector<std::string> settings;              ///< of the same workload: over those that all points share
+};
+
 struct AccuracyRequest {
     ComparisonRequest comparison;           ///< one design; its workload settings are those that all points share
     std::vector<traces::QualityKnob> sweep; ///< every combination; empty: each knob of the workload alone
     LightSampling sampling;                 ///< of the truth, where the workload has a light
-    std::uint32_t averaged = 0; ///< largest number of point lights whose hard shadows are averaged; 0: no such points
+    std::optional<Rival> against;           ///< nothing: pictures are measured against ray-traced truth
+    std::uint32_t averaged =
+        0; ///< largest number of frames that traces::Averaging takes the mean of; 0: no such points
     bool pictures = false;
     bool use_cache = true;
 };
 
 struct AccuracyPoint {
+    std::string workload;
+    bool rival = false;             ///< what the others are measured against
     std::vector<std::string> knobs; ///< "name=value", what differs from the shared settings
     double sim_ms = 0;              ///< of a frame on the simulated GPU
     double host_s = 0;              ///< of this machine: front end, reference and simulation
@@ -37,7 +49,7 @@ struct AccuracyPoint {
     bool pareto_host = false; ///< the same on this machine
     Picture picture;          ///< beside the truth; of no size unless asked for
 
-    std::string name() const; ///< its knobs
+    std::string name() const; ///< its knobs; no two points share it
 };
 
 struct Accuracy {
@@ -45,6 +57,7 @@ struct Accuracy {
     SceneFacts scene;
     std::uint32_t width = 0, height = 0;
     std::vector<std::string> settings; ///< shared by all points
+    std::string against;               ///< the rival that the pictures were measured against; its point is the last
     std::vector<AccuracyPoint> points;
     std::uint32_t rays = 0; ///< to the light from each point; 0 without a light
     double truth_seconds = 0;

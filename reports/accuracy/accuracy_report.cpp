@@ -67,13 +67,17 @@ std::vector<Column> columns_of(const Accuracy& accuracy) {
     return columns;
 }
 
+std::string beside_what(const Accuracy& accuracy) {
+    if (!accuracy.against.empty()) return fmt::format("'{}' in submission order", accuracy.against);
+    if (accuracy.rays > 0) return fmt::format("{} to the light from each point", counted(accuracy.rays, "ray"));
+    return "all fragments of each pixel's ray";
+}
+
 std::string how_measured(const Accuracy& accuracy) {
     const ImageError& first = accuracy.points.front().error;
     std::string text =
         fmt::format("{}: {} x {}, {}, design {} on {}, beside {}", accuracy.scene.name, accuracy.width, accuracy.height,
-                    accuracy.workload, accuracy.design, accuracy.gpu,
-                    accuracy.rays > 0 ? fmt::format("{} to the light from each point", counted(accuracy.rays, "ray"))
-                                      : std::string("all fragments of each pixel's ray"));
+                    accuracy.workload, accuracy.design, accuracy.gpu, beside_what(accuracy));
     if (!accuracy.settings.empty()) text += fmt::format("; {}", fmt::join(accuracy.settings, ", "));
     return text + fmt::format(". {} compared, {} at silhouettes left out.", counted(first.compared, "pixel"),
                               with_commas(first.excluded));
@@ -110,12 +114,13 @@ nlohmann::ordered_json accuracy_json(const Accuracy& accuracy) {
             const std::size_t equals = knob.find('=');
             knobs[knob.substr(0, equals)] = knob.substr(equals + 1);
         }
-        nlohmann::ordered_json json{{"workload", accuracy.workload},    {"knobs", std::move(knobs)},
+        nlohmann::ordered_json json{{"workload", point.workload},       {"knobs", std::move(knobs)},
                                     {"sim_ms", point.sim_ms},           {"host_s", point.host_s},
                                     {"rmse", point.error.rmse},         {"mean", point.error.mean},
                                     {"worst", point.error.worst},       {"pareto", point.pareto},
                                     {"pareto_host", point.pareto_host}, {"compared", point.error.compared},
                                     {"excluded", point.error.excluded}, {"wrong_pixels", point.wrong_pixels}};
+        if (point.rival) json["rival"] = true;
         if (point.error.shadows) {
             json["acne"] = point.error.acne;
             json["too_dark"] = point.error.too_dark;
@@ -123,19 +128,22 @@ nlohmann::ordered_json accuracy_json(const Accuracy& accuracy) {
         }
         points.push_back(std::move(json));
     }
-    return {{"ropsim", {{"version", version_text()}, {"build", build_text()}}},
-            {"scene",
-             {{"name", accuracy.scene.name},
-              {"hash", accuracy.scene.hash},
-              {"width", accuracy.width},
-              {"height", accuracy.height}}},
-            {"workload", accuracy.workload},
-            {"settings", accuracy.settings},
-            {"design", accuracy.design},
-            {"gpu", accuracy.gpu},
-            {"rays", accuracy.rays},
-            {"host", {{"truth_seconds", accuracy.truth_seconds}, {"truth_cached", accuracy.truth_cached}}},
-            {"points", std::move(points)}};
+    nlohmann::ordered_json json{
+        {"ropsim", {{"version", version_text()}, {"build", build_text()}}},
+        {"scene",
+         {{"name", accuracy.scene.name},
+          {"hash", accuracy.scene.hash},
+          {"width", accuracy.width},
+          {"height", accuracy.height}}},
+        {"workload", accuracy.workload},
+        {"settings", accuracy.settings},
+        {"design", accuracy.design},
+        {"gpu", accuracy.gpu},
+        {"rays", accuracy.rays},
+        {"host", {{"truth_seconds", accuracy.truth_seconds}, {"truth_cached", accuracy.truth_cached}}},
+        {"points", std::move(points)}};
+    if (!accuracy.against.empty()) json["against"] = accuracy.against;
+    return json;
 }
 
 std::string accuracy_text(const Accuracy& accuracy, TerminalStyle style) {

@@ -2,6 +2,7 @@
 
 #include "models/gpu_library.hpp"
 #include "traces/camera.hpp"
+#include "traces/loads.hpp"
 #include "traces/workloads.hpp"
 
 #include <fmt/format.h>
@@ -12,11 +13,10 @@ PreparedFrame prepare_frame(const GeometryExperiment& experiment, const pipeline
     traces::PreparedScene prepared = traces::prepare_scene(traces::load_scene(experiment.scene), experiment.prepare,
                                                            gpu.geometry.vertex_reuse, gpu.geometry.vertex_fetch.cache);
     const traces::Scene& scene = prepared.scene;
-    traces::WorkloadOptions options;
-    options.set(experiment.reads_all ? "reads=all" : "reads=position");
+    const traces::Load load = traces::geometry_feed_load(experiment.reads_all);
     // No fragment is made, so any view will do.
     const pipeline::View view = traces::make_view(scene, "auto", 64, 64);
-    pipeline::Frame frame = traces::build_frame(scene, view, "geometry", options);
+    pipeline::Frame frame = traces::build_frame(scene, view, load.workload, traces::WorkloadOptions::of(load.settings));
     frame.submission = experiment.submission;
     return {std::make_shared<const pipeline::Frame>(std::move(frame)),
             std::move(prepared.steps),

@@ -29,7 +29,7 @@ struct PreparedFrame {
     std::vector<std::string> notes;
 };
 
-/// Loads and prepares a scene and builds its frame for the workload `geometry`. `reuse` and `cache` only measure.
+/// Loads and prepares a scene and builds the frame that loads its geometry feed. `reuse` and `cache` only measure.
 PreparedFrame prepare_frame(const GeometryExperiment& experiment, const pipeline::GpuParams& gpu);
 
 pipeline::VertexPathResult run_geometry(const pipeline::GpuParams& gpu, const pipeline::Frame& frame, Fidelity fidelity,

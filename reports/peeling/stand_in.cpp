@@ -2,6 +2,7 @@
 
 #include "reports/comparison.hpp"
 #include "sim/check.hpp"
+#include "traces/loads.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -46,7 +47,9 @@ ComparisonRequest request_of(const PublishedPeeling& published, const PeelingMea
     request.scene = dataset.scene_of(triangles);
     request.camera = dataset.camera_of(triangles);
     request.width = request.height = picture_size;
-    request.workload_settings = {fmt::format("k={}", row.k), "entry=" + row.entry};
+    const traces::Load load = traces::layers_load(row.k, row.entry);
+    request.workload = load.workload;
+    request.workload_settings = load.settings;
     request.gpu = published.gpu;
     request.gpu_settings = shrunk_limits(published, dataset, static_cast<double>(triangles));
     request.gpu_settings.insert(request.gpu_settings.end(), gpu_settings.begin(), gpu_settings.end());

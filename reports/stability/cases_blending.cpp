@@ -9,6 +9,7 @@
 #include "reports/stability/quad.hpp"
 #include "reports/stability/replay.hpp"
 #include "reports/stability/scenes.hpp"
+#include "traces/loads.hpp"
 
 #include <fmt/format.h>
 
@@ -255,31 +256,30 @@ void add_many_layers(std::vector<Case>& cases) {
     cases.push_back({"blending.10000-composited-1", Side::above,
                      "10,000 layers of opacity 1 composited by A7 and by nodes", "the first one's colour, exactly",
                      "absolute", 0.0, [layers](Finding& finding) { layers(finding, 1.0F, 1.0); }});
-    cases.push_back({"blending.10000-frame", Side::whole,
-                     "a frame of 10,000 layers over 4x4 pixels blended in RGBA32F by the ROP, opacity 1/16",
-                     "113-bit accumulation of the same layers", "1/255", 0.01, [](Finding& finding) {
-                         const Replay replay("gen:stack?n=10000&x=0&y=0&w=4&h=4&order=back-to-front",
-                                             {.width = 4,
-                                              .height = 4,
-                                              .workload = "blended",
-                                              .knobs = {"colour_format=rgba32f", "opacity=0.0625"},
-                                              .threads = 1});
-                         const pipeline::RunResult run = replay.run("existing");
-                         finding.require(run.wrong_pixels == 0, "equals the frame in submission order");
-                         std::array<Quad, 3> exact{1, 1, 1};
-                         const auto& stream = replay.streams[0];
-                         for (std::size_t i = 0; i < stream.quads.size(); ++i) {
-                             const pipeline::Quad& quad = stream.quads[i];
-                             if (quad.x != 0 || quad.y != 0 || (quad.alive & 1U) == 0) continue;
-                             const glm::vec4 colour = stream.colours[i][0];
-                             for (std::size_t c = 0; c < 3; ++c)
-                                 exact[c] = exact[c] * (1 - Quad(0.0625F) * Quad(colour.a)) +
-                                            Quad(colour[static_cast<int>(c)]) * Quad(0.0625F) * Quad(colour.a);
-                         }
-                         for (std::size_t c = 0; c < 3; ++c)
-                             finding.error((static_cast<double>(run.colour[c]) - static_cast<double>(exact[c])) *
-                                           255.0);
-                     }});
+    cases.push_back(
+        {"blending.10000-frame", Side::whole,
+         "a frame of 10,000 layers over 4x4 pixels blended in RGBA32F by the ROP, opacity 1/16",
+         "113-bit accumulation of the same layers", "1/255", 0.01, [](Finding& finding) {
+             traces::Load load = traces::blending_load("rgba32f");
+             load.settings.emplace_back("opacity=0.0625");
+             const Replay replay(
+                 "gen:stack?n=10000&x=0&y=0&w=4&h=4&order=back-to-front",
+                 {.width = 4, .height = 4, .workload = load.workload, .knobs = load.settings, .threads = 1});
+             const pipeline::RunResult run = replay.run("existing");
+             finding.require(run.wrong_pixels == 0, "equals the frame in submission order");
+             std::array<Quad, 3> exact{1, 1, 1};
+             const auto& stream = replay.streams[0];
+             for (std::size_t i = 0; i < stream.quads.size(); ++i) {
+                 const pipeline::Quad& quad = stream.quads[i];
+                 if (quad.x != 0 || quad.y != 0 || (quad.alive & 1U) == 0) continue;
+                 const glm::vec4 colour = stream.colours[i][0];
+                 for (std::size_t c = 0; c < 3; ++c)
+                     exact[c] = exact[c] * (1 - Quad(0.0625F) * Quad(colour.a)) +
+                                Quad(colour[static_cast<int>(c)]) * Quad(0.0625F) * Quad(colour.a);
+             }
+             for (std::size_t c = 0; c < 3; ++c)
+                 finding.error((static_cast<double>(run.colour[c]) - static_cast<double>(exact[c])) * 255.0);
+         }});
     const auto frame = [](Finding& finding, const char* program, const char* opacity, std::size_t layers_seen) {
         const std::array depths{0.25F, 0.5F, 0.75F};
         const Replay replay(layers_of(4, 4, depths),

@@ -6,7 +6,7 @@
 #include "reports/stability/floats.hpp"
 #include "reports/stability/quad.hpp"
 #include "reports/stability/scenes.hpp"
-#include "traces/workloads/view_rays.hpp"
+#include "traces/view_rays.hpp"
 
 #include <fmt/format.h>
 

@@ -277,7 +277,7 @@ void add_program_doors(std::vector<Case>& cases) {
 }
 
 void add_option_doors(std::vector<Case>& cases) {
-    const auto settings = [](Finding& finding, const std::string& workload, const std::string& key) {
+    const auto settings = [](Finding& finding, const traces::WorkloadChoice& workload, const std::string& key) {
         for (const char* bad : {"nan", "inf", "-inf", "1e999", "NaN", "Infinity"}) {
             finding.refuses(
                 [&] {
@@ -290,7 +290,7 @@ void add_option_doors(std::vector<Case>& cases) {
         }
     };
     cases.push_back(door("workload-settings", "nan, inf and 1e999 as opacity", "refused, with the key",
-                         [settings](Finding& finding) { settings(finding, "transparency", "opacity"); }));
+                         [settings](Finding& finding) { settings(finding, {}, "opacity"); }));
     cases.push_back(
         door("gpu-settings", "nan, inf and 1e999 as numbers of a GPU", "refused, with the path", [](Finding& finding) {
             const Replay replay("gen:stack?n=2", {.width = 16, .height = 16, .threads = 1});

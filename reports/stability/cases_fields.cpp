@@ -8,6 +8,7 @@
 #include "reports/stability/quad.hpp"
 #include "reports/stability/replay.hpp"
 #include "reports/stability/scenes.hpp"
+#include "traces/loads.hpp"
 #include "traces/tetrahedra/tetrahedral_mesh.hpp"
 #include "traces/workloads/lens_blur.hpp"
 #include "traces/workloads/translucency_picture.hpp"
@@ -135,7 +136,8 @@ void add_scalars(std::vector<Case>& cases) {
         traces::Scene scene = traces::scene_of(std::move(mesh));
         scene.name = "one";
         traces::finish_scene(scene);
-        const Replay replay(scene, {.width = 16, .height = 16, .workload = "volume", .threads = 1});
+        const Replay replay(
+            scene, {.width = 16, .height = 16, .workload = traces::ray_integral_load().workload, .threads = 1});
         for (const float value : replay.reference.picture)
             if (!std::isfinite(value) || value < 0.0F || value > 1.0F) return -1.0;
         double least = 1.0;
@@ -165,22 +167,23 @@ void add_scalars(std::vector<Case>& cases) {
                          const double seen = opacity_frame(-1e30F, 1e30F), small = opacity_frame(-1.0F, 1.0F);
                          finding.require(seen >= 0.0 && std::fabs(seen - small) < 1e-3, "equal pictures");
                      }});
-    cases.push_back({"fields.zero-volume", Side::at,
-                     "a tetrahedron without volume between two that have some: flat, and a line",
-                     "its faces are drawn, what lies between them is empty: finite, the opacity of the others", "1/255",
-                     0.01, [](Finding& finding) {
-                         traces::TetrahedralMesh mesh{"flat",
-                                                      {{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}, {0, 0, 0}, {0.5F, -1, 0}},
-                                                      {0, 0.5F, 1, 0.5F, 0.2F},
-                                                      {{0, 1, 2, 3}, {0, 1, 4, 4}},
-                                                      {}};
-                         traces::Scene scene = traces::scene_of(std::move(mesh));
-                         scene.name = "flat";
-                         traces::finish_scene(scene);
-                         const Replay replay(scene, {.width = 16, .height = 16, .workload = "volume", .threads = 1});
-                         for (const float value : replay.reference.picture)
-                             finding.error(static_cast<double>(1.0F - value) * 255.0);
-                     }});
+    cases.push_back(
+        {"fields.zero-volume", Side::at, "a tetrahedron without volume between two that have some: flat, and a line",
+         "its faces are drawn, what lies between them is empty: finite, the opacity of the others", "1/255", 0.01,
+         [](Finding& finding) {
+             traces::TetrahedralMesh mesh{"flat",
+                                          {{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}, {0, 0, 0}, {0.5F, -1, 0}},
+                                          {0, 0.5F, 1, 0.5F, 0.2F},
+                                          {{0, 1, 2, 3}, {0, 1, 4, 4}},
+                                          {}};
+             traces::Scene scene = traces::scene_of(std::move(mesh));
+             scene.name = "flat";
+             traces::finish_scene(scene);
+             const Replay replay(
+                 scene, {.width = 16, .height = 16, .workload = traces::ray_integral_load().workload, .threads = 1});
+             for (const float value : replay.reference.picture)
+                 finding.error(static_cast<double>(1.0F - value) * 255.0);
+         }});
     cases.push_back(
         {"fields.inverted", Side::whole, "a tetrahedron with two corners exchanged: its volume is negative",
          "the same faces and the same picture", "1/255", 0.01, [](Finding& finding) {
@@ -190,7 +193,8 @@ void add_scalars(std::vector<Case>& cases) {
                  traces::Scene scene = traces::scene_of(std::move(mesh));
                  scene.name = "one";
                  traces::finish_scene(scene);
-                 return Replay(scene, {.width = 16, .height = 16, .workload = "isosurface", .threads = 1})
+                 return Replay(scene,
+                               {.width = 16, .height = 16, .workload = traces::crossings_load().workload, .threads = 1})
                      .reference.picture;
              };
              const auto right = picture({0, 1, 2, 3}), inverted = picture({1, 0, 2, 3});

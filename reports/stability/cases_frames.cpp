@@ -6,6 +6,7 @@
 #include "reports/stability/scenes.hpp"
 #include "traces/camera.hpp"
 #include "traces/generators/screen.hpp"
+#include "traces/loads.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -17,7 +18,7 @@ const std::vector<std::string> designs{"existing", "scoreboard", "blender", "mul
 /// Every design over a scene: fragments of the stream, the reference picture.
 void all_designs(Finding& finding, const traces::Scene& scene, std::uint32_t width, std::uint32_t height,
                  double fragments) {
-    for (const char* workload : {"transparency", "opaque"}) {
+    for (const std::string& workload : {traces::usual_workload(), traces::nearest_surface_load().workload}) {
         const Replay replay(scene, {.width = width, .height = height, .workload = workload, .threads = 1});
         finding.error(static_cast<double>(replay.streams.back().fragments) - fragments);
         for (const std::string& design : designs) {
@@ -30,20 +31,20 @@ void all_designs(Finding& finding, const traces::Scene& scene, std::uint32_t wid
 }
 
 void add_small_frames(std::vector<Case>& cases) {
-    cases.push_back({"frames.nothing-drawn", Side::below, "a frame whose passes have no draws",
-                     "every design ends with the cleared surfaces", "pixels", 0.0, [](Finding& finding) {
-                         for (const char* workload : {"transparency", "opaque"}) {
-                             Replay replay("gen:stack?n=3",
-                                           {.width = 16, .height = 16, .workload = workload, .threads = 1});
-                             for (pipeline::Pass& pass : replay.frame.passes) pass.draws.clear();
-                             replay.streams = pipeline::rasterize_frame(replay.frame);
-                             replay.reference = pipeline::run_reference(replay.frame, replay.streams);
-                             for (const std::string& design : designs) {
-                                 const auto run = replay.run(design);
-                                 finding.error(static_cast<double>(run.wrong_pixels + run.fragments));
-                             }
-                         }
-                     }});
+    cases.push_back(
+        {"frames.nothing-drawn", Side::below, "a frame whose passes have no draws",
+         "every design ends with the cleared surfaces", "pixels", 0.0, [](Finding& finding) {
+             for (const std::string& workload : {traces::usual_workload(), traces::nearest_surface_load().workload}) {
+                 Replay replay("gen:stack?n=3", {.width = 16, .height = 16, .workload = workload, .threads = 1});
+                 for (pipeline::Pass& pass : replay.frame.passes) pass.draws.clear();
+                 replay.streams = pipeline::rasterize_frame(replay.frame);
+                 replay.reference = pipeline::run_reference(replay.frame, replay.streams);
+                 for (const std::string& design : designs) {
+                     const auto run = replay.run(design);
+                     finding.error(static_cast<double>(run.wrong_pixels + run.fragments));
+                 }
+             }
+         }});
     cases.push_back({"frames.nothing-visible", Side::below,
                      "triangles beside the viewport, before the near and behind the far plane",
                      "no fragment, every design ends", "pixels", 0.0, [](Finding& finding) {
@@ -53,26 +54,30 @@ void add_small_frames(std::vector<Case>& cases) {
                                                    {{1, 1, 1.5F}, {1, 9, 1.5F}, {9, 5, 1.5F}}}),
                                      16, 16, 0);
                      }});
-    cases.push_back(
-        {"frames.all-faces-culled", Side::below, "a closed mesh seen from inside, one-sided",
-         "no fragment, every primitive culled by facing", "fragments", 0.0, [](Finding& finding) {
-             traces::Scene scene = world_scene({{-1, -1, -5}, {0, 1, -5}, {1, -1, -5}}); // clockwise
-             scene.resources->materials[0].double_sided = false;
-             traces::finish_scene(scene);
-             pipeline::FrontEndOptions options;
-             const std::vector<std::uint32_t> draws{0};
-             const auto stream = pipeline::rasterize(*scene.resources, scene.draws, draws,
-                                                     perspective_view(16, 16, 60, 0.1, 100), options);
-             finding.error(static_cast<double>(stream.fragments));
-             finding.require(stream.primitives[0].fate == pipeline::PrimitiveFate::culled_facing, "culled by facing");
-             options.both_faces = true;
-             const auto both = pipeline::rasterize(*scene.resources, scene.draws, draws,
-                                                   perspective_view(16, 16, 60, 0.1, 100), options);
-             finding.require(both.fragments > 0, "drawn where both faces are");
-             const Replay replay(
-                 scene, {.width = 16, .height = 16, .workload = "opaque", .camera = "0,0,0,0,0,-1,60", .threads = 1});
-             for (const std::string& design : designs) finding.error(static_cast<double>(replay.run(design).fragments));
-         }});
+    cases.push_back({"frames.all-faces-culled", Side::below, "a closed mesh seen from inside, one-sided",
+                     "no fragment, every primitive culled by facing", "fragments", 0.0, [](Finding& finding) {
+                         traces::Scene scene = world_scene({{-1, -1, -5}, {0, 1, -5}, {1, -1, -5}}); // clockwise
+                         scene.resources->materials[0].double_sided = false;
+                         traces::finish_scene(scene);
+                         pipeline::FrontEndOptions options;
+                         const std::vector<std::uint32_t> draws{0};
+                         const auto stream = pipeline::rasterize(*scene.resources, scene.draws, draws,
+                                                                 perspective_view(16, 16, 60, 0.1, 100), options);
+                         finding.error(static_cast<double>(stream.fragments));
+                         finding.require(stream.primitives[0].fate == pipeline::PrimitiveFate::culled_facing,
+                                         "culled by facing");
+                         options.both_faces = true;
+                         const auto both = pipeline::rasterize(*scene.resources, scene.draws, draws,
+                                                               perspective_view(16, 16, 60, 0.1, 100), options);
+                         finding.require(both.fragments > 0, "drawn where both faces are");
+                         const Replay replay(scene, {.width = 16,
+                                                     .height = 16,
+                                                     .workload = traces::nearest_surface_load().workload,
+                                                     .camera = "0,0,0,0,0,-1,60",
+                                                     .threads = 1});
+                         for (const std::string& design : designs)
+                             finding.error(static_cast<double>(replay.run(design).fragments));
+                     }});
     cases.push_back({"frames.no-pixel-centre", Side::below, "100 triangles between the pixel centres",
                      "100 triangles, no quad, every design ends", "pixels", 0.0, [](Finding& finding) {
                          std::vector<ScreenTriangle> triangles;
@@ -120,7 +125,8 @@ void corners_of(Finding& finding, std::uint32_t width, std::uint32_t height) {
     const auto w = static_cast<float>(width), h = static_cast<float>(height);
     const traces::Scene scene = screen_scene(
         {{{0, 0, 0.25F}, {0, 2, 0.25F}, {2, 0, 0.25F}}, {{w, h, 0.5F}, {w, h - 2, 0.5F}, {w - 2, h, 0.5F}}});
-    const Replay replay(scene, {.width = width, .height = height, .workload = "opaque", .threads = 1});
+    const Replay replay(
+        scene, {.width = width, .height = height, .workload = traces::nearest_surface_load().workload, .threads = 1});
     const auto& image = replay.reference;
     finding.error(static_cast<double>(image.depth.size()) - static_cast<double>(width) * height);
     finding.require(image.depth.front() < 0.26F && image.depth.back() < 0.51F, "first and last pixel are covered");
@@ -170,7 +176,7 @@ void add_samples(std::vector<Case>& cases) {
         // A vertical edge through the middle of the picture's pixels covers half of their samples.
         const Replay replay(screen_scene({{{-20, -20, 0.5F}, {-20, 60, 0.5F}, {4.5F, -20, 0.5F}},
                                           {{4.5F, -20, 0.5F}, {-20, 60, 0.5F}, {4.5F, 60, 0.5F}}}),
-                            {.width = 9, .height = 8, .workload = "transparency", .threads = 1, .samples = count});
+                            {.width = 9, .height = 8, .threads = 1, .samples = count});
         finding.error(static_cast<double>(replay.streams[0].fragments) -
                       8.0 * (4 * count + (count == 1 ? 0 : count / 2)));
         for (const char* design : {"blender", "scoreboard", "multipass"})

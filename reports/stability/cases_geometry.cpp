@@ -6,6 +6,7 @@
 #include "reports/stability/replay.hpp"
 #include "reports/stability/scenes.hpp"
 #include "traces/generators/mesh.hpp"
+#include "traces/loads.hpp"
 #include "traces/preparation.hpp"
 #include "traces/preparation/quantise.hpp"
 #include "traces/preparation/steps.hpp"
@@ -129,17 +130,15 @@ void add_meshes(std::vector<Case>& cases) {
                                              2 * vertices({"reorder", "batch?vertices=128"}),
                                          "twice as many vertices");
                      }});
-    const auto fetched = [](const char* reads) {
-        const Replay replay(scene_of(fan(50)), {.width = 16,
-                                                .height = 16,
-                                                .workload = "geometry",
-                                                .knobs = {std::string("reads=") + reads},
-                                                .threads = 1});
-        return replay.frame;
+    const auto fetched = [](bool every_attribute) {
+        const traces::Load load = traces::geometry_feed_load(every_attribute);
+        return Replay(scene_of(fan(50)),
+                      {.width = 16, .height = 16, .workload = load.workload, .knobs = load.settings, .threads = 1})
+            .frame;
     };
     cases.push_back({"geometry.unread-attributes", Side::below, "normals and colours that no shader reads",
                      "not fetched: left out, by name", "", 0.0, [fetched](Finding& finding) {
-                         const pipeline::Frame frame = fetched("position");
+                         const pipeline::Frame frame = fetched(false);
                          const bool named =
                              std::any_of(frame.left_out.begin(), frame.left_out.end(),
                                          [](const pipeline::LeftOut& one) { return one.unit == "normals"; });
@@ -150,7 +149,7 @@ void add_meshes(std::vector<Case>& cases) {
     cases.push_back({"geometry.touched-attributes", Side::above,
                      "normals and colours that the vertex shader touches and nothing uses", "fetched", "", 0.0,
                      [fetched](Finding& finding) {
-                         const std::uint32_t read = fetched("all").needs.attributes;
+                         const std::uint32_t read = fetched(true).needs.attributes;
                          finding.require((read & pipeline::mask_of(pipeline::Semantic::normal)) != 0 &&
                                              (read & pipeline::mask_of(pipeline::Semantic::colour)) != 0,
                                          "both are read");

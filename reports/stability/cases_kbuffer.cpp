@@ -9,6 +9,7 @@
 #include "reports/stability/replay.hpp"
 #include "reports/stability/scenes.hpp"
 #include "sim/random.hpp"
+#include "traces/loads.hpp"
 #include "traces/workloads/csg_surface.hpp"
 
 #include <algorithm>
@@ -191,9 +192,9 @@ Streamed stream_of_groups(std::uint32_t k, std::uint32_t places) {
     return {state == composite(popped), state == composite(sorted)};
 }
 
-/// Three strips, each over the next one, in one of 6 orders: the largest difference between what A7 with one entry
-/// ("transparency") or blending ("blended") makes of them and the composite of sorted layers.
-double cycle_error(int order, const std::string& workload) {
+/// Three strips, each over the next one, in one of 6 orders: the largest difference between what a load makes of them
+/// and the composite of sorted layers.
+double cycle_error(int order, const traces::Load& load) {
     const std::array<ScreenTriangle, 3> strips{{{{1, 2, 0.3F}, {1, 7, 0.3F}, {31, 25, 0.6F}},
                                                 {{31, 27, 0.3F}, {31, 22, 0.3F}, {2, 26, 0.6F}},
                                                 {{3, 31, 0.3F}, {8, 31, 0.3F}, {5, 1, 0.6F}}}};
@@ -202,11 +203,10 @@ double cycle_error(int order, const std::string& workload) {
     const traces::Scene scene = screen_scene({strips[places[0]], strips[places[1]], strips[places[2]]});
     const ReplayOptions exact{.width = 32, .height = 32, .knobs = {"k=4"}, .threads = 1};
     ReplayOptions other = exact;
-    other.workload = workload;
-    other.knobs = {workload == "blended" ? "colour_format=rgba32f" : "program=order-and-blend"};
-    if (workload != "blended") other.knobs.emplace_back("k=1");
+    other.workload = load.workload;
+    other.knobs = load.settings;
     const Replay sorted(scene, exact), seen(scene, other);
-    const std::vector<float>& picture = workload == "blended" ? seen.reference.colour : seen.reference.picture;
+    const std::vector<float>& picture = seen.frame.program ? seen.reference.picture : seen.reference.colour;
     double largest = 0.0;
     for (std::size_t i = 0; i < picture.size(); ++i)
         if (i % 4 != 3)
@@ -236,14 +236,16 @@ void add_order(std::vector<Case>& cases) {
                      "three triangles that overlap in a cycle, blended in each of their 6 orders",
                      "no order gives the picture of sorted layers", "", 0.0, [](Finding& finding) {
                          for (int order = 0; order < 6; ++order)
-                             finding.require(cycle_error(order, "blended") > 0.05,
+                             finding.require(cycle_error(order, traces::blending_load("rgba32f")) > 0.05,
                                              fmt::format("order {} fails", order));
                      }});
     cases.push_back({"kbuffer.cycle-k1", Side::at,
                      "three triangles that overlap in a cycle, two layers deep, in each of their 6 orders: A7, k = 1",
                      "the picture of sorted layers: no fragment is more than one place late", "relative", 1e-6,
                      [](Finding& finding) {
-                         for (int order = 0; order < 6; ++order) finding.error(cycle_error(order, "transparency"));
+                         traces::Load load = traces::layers_load(1, "rgbz");
+                         load.settings.emplace_back("program=order-and-blend");
+                         for (int order = 0; order < 6; ++order) finding.error(cycle_error(order, load));
                      }});
 }
 

@@ -7,6 +7,7 @@
 #include "reports/stability/quad.hpp"
 #include "reports/stability/replay.hpp"
 #include "reports/stability/scenes.hpp"
+#include "traces/loads.hpp"
 #include "traces/shadows/shadow_map.hpp"
 
 #include <fmt/format.h>
@@ -189,9 +190,11 @@ int wrong_pixels_of_planes(const std::string& format, double quanta) {
     for (int phase = 0; phase < 8; ++phase) {
         const double near = 0.3 + (phase + 0.4) / 8.0 * quantum_of(format);
         const std::array depths{static_cast<float>(near + quanta * quantum_of(format)), static_cast<float>(near)};
-        const Replay replay(
-            layers_of(4, 4, depths),
-            {.width = 4, .height = 4, .workload = "opaque", .knobs = {"depth_format=" + format}, .threads = 1});
+        const Replay replay(layers_of(4, 4, depths), {.width = 4,
+                                                      .height = 4,
+                                                      .workload = traces::nearest_surface_load().workload,
+                                                      .knobs = {"depth_format=" + format},
+                                                      .threads = 1});
         const auto code = pipeline::depth_code(format_of(format), depths[1]);
         const pipeline::RunResult run = replay.run("existing");
         for (const float depth : run.depth) wrong += pipeline::depth_code(format_of(format), depth) == code ? 0 : 1;

@@ -7,8 +7,8 @@
 #include "pipeline/functional/texture_sampler.hpp"
 #include "reports/stability/curve_maker.hpp"
 #include "reports/stability/scenes.hpp"
+#include "traces/view_rays.hpp"
 #include "traces/workloads/lens_blur.hpp"
-#include "traces/workloads/view_rays.hpp"
 
 namespace reports::stability {
 

@@ -5,18 +5,15 @@
 #include "sim/config.hpp"
 #include "traces/camera.hpp"
 #include "traces/submission.hpp"
-#include "traces/workloads.hpp"
 
 namespace reports::stability {
 
 Replay::Replay(const std::string& scene, const ReplayOptions& options) : Replay(traces::load_scene(scene), options) {}
 
-Replay::Replay(const traces::Scene& scene, const ReplayOptions& options) {
-    traces::WorkloadOptions knobs;
-    for (const std::string& knob : options.knobs) knobs.set(knob);
+Replay::Replay(traces::Scene of, ReplayOptions how) : scene(std::move(of)), options(std::move(how)) {
     pipeline::View view = traces::make_view(scene, options.camera, options.width, options.height);
     view.samples = options.samples;
-    frame = traces::build_frame(scene, view, options.workload, knobs);
+    frame = traces::build_frame(scene, view, options.workload, traces::WorkloadOptions::of(options.knobs));
     pipeline::FrontEndOptions front_end;
     front_end.threads = options.threads;
     streams = pipeline::rasterize_frame(frame, front_end);
@@ -24,7 +21,7 @@ Replay::Replay(const traces::Scene& scene, const ReplayOptions& options) {
 }
 
 pipeline::RunResult Replay::run(const std::string& design, const std::vector<std::string>& settings,
-                                pipeline::MachineOptions options) const {
+                                pipeline::MachineOptions machine) const {
     sim::Config config;
     for (const std::string& setting : settings) config.set(setting);
     pipeline::GpuParams gpu;
@@ -32,10 +29,10 @@ pipeline::RunResult Replay::run(const std::string& design, const std::vector<std
     models::check_design_sections(config);
     const auto model = models::make_design(design, config);
     config.expect_all_used();
-    if (!model->submission().changes()) return pipeline::Machine(gpu, frame, streams, *model, options).run(reference);
+    if (!model->submission().changes()) return pipeline::Machine(gpu, frame, streams, *model, machine).run(reference);
     const pipeline::Frame other = traces::submitted(frame, model->submission());
     const auto other_streams = pipeline::rasterize_frame(other);
-    return pipeline::Machine(gpu, other, other_streams, *model, options)
+    return pipeline::Machine(gpu, other, other_streams, *model, machine)
         .run(pipeline::run_reference(other, other_streams));
 }
 

@@ -4,6 +4,7 @@
 #include "pipeline/frame.hpp"
 #include "pipeline/machine.hpp"
 #include "traces/scene.hpp"
+#include "traces/workloads.hpp"
 
 #include <string>
 #include <vector>
@@ -12,7 +13,7 @@ namespace reports::stability {
 
 struct ReplayOptions {
     std::uint32_t width = 128, height = 128;
-    std::string workload = "transparency";
+    traces::WorkloadChoice workload = {};
     std::string camera = "auto";
     std::vector<std::string> knobs = {}; ///< of the workload: "k=4", "entry=z"
     unsigned threads = 0;                ///< of the functional front end; 0 = all cores
@@ -22,12 +23,14 @@ struct ReplayOptions {
 class Replay {
   public:
     explicit Replay(const std::string& scene, const ReplayOptions& options = {});
-    explicit Replay(const traces::Scene& scene, const ReplayOptions& options = {});
+    explicit Replay(traces::Scene scene, ReplayOptions options = {});
 
     /// `settings` are assignments as on the command line: "existing.visibility=rop_cache", "fragment.pipes=1".
     pipeline::RunResult run(const std::string& design, const std::vector<std::string>& settings = {},
                             pipeline::MachineOptions options = {}) const;
 
+    traces::Scene scene;
+    ReplayOptions options;
     pipeline::Frame frame;
     std::vector<pipeline::FragmentStream> streams;
     pipeline::ReferenceImage reference;

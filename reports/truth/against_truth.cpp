@@ -3,7 +3,6 @@
 #include "pipeline/functional/eye_depth.hpp"
 #include "reports/kbuffer_layout.hpp"
 #include "sim/check.hpp"
-#include "traces/workloads/csg_picture.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -91,40 +90,36 @@ TruthError colour_error(const Truth& truth, const pipeline::Frame& frame, std::s
     return error;
 }
 
-TruthError solid_error(const Truth& truth, const pipeline::Frame& frame, std::span<const float> kbuffer) {
-    const auto* csg = dynamic_cast<const traces::CsgPicture*>(frame.resolve.get());
-    CHECK(csg != nullptr && !truth.solid.empty());
-    const traces::CsgSurface surface = traces::csg_surface(frame, kbuffer, csg->expression());
+TruthError distance_error(const Truth& truth, const traces::TruthMethod& method, const pipeline::Frame& frame,
+                          std::span<const float> kbuffer) {
+    CHECK(method.rasterized && !truth.channels.empty());
+    const traces::TruthChannel& channel = truth.channels.front();
+    const std::vector<Distance> rasterized = method.rasterized(frame, kbuffer);
+    CHECK(rasterized.size() == truth.pixels());
     TruthError error;
-    error.what = "solid";
+    error.what = channel.name;
     error.tolerance = depth_tolerance;
     compare_depths(
         truth, error,
         [&](std::size_t pixel) -> Distance {
-            if (!truth.has_solid(pixel)) return std::nullopt;
-            return truth.solid[pixel];
+            if (!channel.has(pixel)) return std::nullopt;
+            return channel.values[pixel];
         },
-        [&](std::size_t pixel) -> Distance {
-            const auto x = static_cast<std::uint32_t>(pixel % truth.width);
-            const auto y = static_cast<std::uint32_t>(pixel / truth.width);
-            if (!surface.image.sees(x, y)) return std::nullopt;
-            return surface.image.distance(x, y);
-        });
+        [&](std::size_t pixel) { return rasterized[pixel]; });
     return error;
 }
 
-std::vector<TruthError> errors_of_reference(const Truth& truth, const pipeline::Frame& frame,
-                                            const pipeline::ReferenceImage& reference) {
+std::vector<TruthError> errors_of_reference(const Truth& truth, const traces::TruthMethod& method,
+                                            const pipeline::Frame& frame, const pipeline::ReferenceImage& reference) {
     std::vector<TruthError> errors;
     const bool nearest = frame.program != nullptr && frame.program->peeling() == pipeline::Peeling::nearest;
     if (nearest)
         for (std::uint32_t layer = 0; layer < std::min(truth.layers, frame.program->k()); ++layer)
             errors.push_back(layer_error(truth, frame, reference.kbuffer, layer));
-    if (!truth.solid.empty()) {
-        errors.push_back(solid_error(truth, frame, reference.kbuffer));
-        return errors; // its colours are differences of depths, which differ at every edge
-    }
-    errors.push_back(colour_error(truth, frame, reference.picture.empty() ? reference.colour : reference.picture));
+    errors.push_back(
+        method.rasterized
+            ? distance_error(truth, method, frame, reference.kbuffer)
+            : colour_error(truth, frame, reference.picture.empty() ? reference.colour : reference.picture));
     return errors;
 }
 

@@ -46,11 +46,12 @@ TruthError layer_error(const Truth& truth, const pipeline::Frame& frame, std::sp
 /// `picture`: RGBA floats per pixel. Pixels that overflow the frame's k are left out.
 TruthError colour_error(const Truth& truth, const pipeline::Frame& frame, std::span<const float> picture);
 
-/// The solid of a CSG frame: relative error of its distance.
-TruthError solid_error(const Truth& truth, const pipeline::Frame& frame, std::span<const float> kbuffer);
+/// Of the method's first channel, which holds distances: relative error.
+TruthError distance_error(const Truth& truth, const traces::TruthMethod& method, const pipeline::Frame& frame,
+                          std::span<const float> kbuffer);
 
-/// Everything of the above that the frame has, for the frame in submission order.
-std::vector<TruthError> errors_of_reference(const Truth& truth, const pipeline::Frame& frame,
-                                            const pipeline::ReferenceImage& reference);
+/// The layers that the frame keeps, and distances or colours as the method says, for the frame in submission order.
+std::vector<TruthError> errors_of_reference(const Truth& truth, const traces::TruthMethod& method,
+                                            const pipeline::Frame& frame, const pipeline::ReferenceImage& reference);
 
 } // namespace reports

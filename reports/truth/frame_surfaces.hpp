@@ -15,22 +15,8 @@
 
 namespace reports {
 
-/// A fragment.
-struct FrameSurface {
-    double distance = 0.0;  ///< along the view axis
-    std::uint32_t draw = 0; ///< index into Frame::draws
-    glm::vec3 colour{0.0F}; ///< as the shader gives it
-};
-
-/// What one pixel sees.
-struct PixelSurfaces {
-    std::vector<FrameSurface> layers; ///< of passes with a k-buffer, and in front of `opaque`
-    FrameSurface opaque;              ///< nearest of the passes with a depth buffer
-    bool has_opaque = false;
-    /// The ray passes a layer's or the opaque surface's edge closely, or sees one edge-on: a rasterizer, which puts
-    /// corners on a grid, may rightly see something else (specification 004, section 10.4).
-    bool doubtful = false;
-};
+using traces::FrameSurface;
+using traces::PixelSurfaces;
 
 /// Hits nearer to an edge than this, in barycentric coordinates, are doubtful; and those with a smaller |cos|.
 inline constexpr double doubtful_edge = 1e-3;
@@ -43,6 +29,7 @@ class FrameSurfaces {
 
     /// `hits`: of the pixel's ray, nearest first. `surfaces` is overwritten.
     void find(std::span<const RayHit> hits, std::uint32_t x, std::uint32_t y, PixelSurfaces& surfaces) const;
+    const HitShading& shading() const { return shading_; }
 
   private:
     enum class Role : std::uint8_t { none, layer, opaque };

@@ -16,7 +16,7 @@
 
 namespace reports {
 
-using pipeline::SquareLight;
+using traces::SquareLight;
 
 struct LightSampling {
     std::uint32_t rays = 1000; ///< for each point, at least 1

@@ -3,7 +3,7 @@
 
 #include "pipeline/draw.hpp"
 #include "reports/truth/ray_scene.hpp"
-#include "traces/workloads/view_rays.hpp"
+#include "traces/view_rays.hpp"
 
 #include <atomic>
 #include <cstdint>

@@ -10,11 +10,11 @@
 #pragma once
 
 #include "pipeline/draw.hpp"
+#include "traces/rays.hpp"
 
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
-#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -23,23 +23,8 @@ namespace reports {
 
 class AlphaMasks;
 
-/// The points origin + t * step with begin <= t <= end, in world space.
-struct WorldRay {
-    glm::dvec3 origin{0.0}, step{0.0};
-    double begin = 0.0;
-    double end = std::numeric_limits<double>::infinity();
-};
-
-/// Where a ray meets a triangle.
-struct RayHit {
-    double t = 0.0;         ///< as in WorldRay
-    std::uint32_t mesh = 0; ///< number of the instance, over all draws in order
-    std::uint32_t draw = 0; ///< index into the draws
-    std::uint32_t triangle = 0;
-    double u = 0.0, v = 0.0; ///< shares of the second and third corner; u, v and 1 - u - v lie in [0,1]
-    float cosine = 0.0F;     ///< |cos| of the angle between ray and normal of the triangle
-    bool front = false;      ///< the corners go round counter-clockwise, seen against the ray
-};
+using traces::RayHit;
+using traces::WorldRay;
 
 /// Throws sim::InputError when rays cannot be traced here.
 void require_rays();

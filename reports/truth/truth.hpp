@@ -2,12 +2,11 @@
 // without rasterizer, k-buffer and time (specification 004, section 10.4).
 //
 // One ray through the centre of each pixel finds all its surfaces; the fragment shader of the pipeline gives them their
-// colours; the formula of the workload makes the picture: layers composited over all surfaces (A11), lengths inside
-// objects (A12), the first point of a solid (A13). Hazards are differences to the frame in submission order, never to
-// this alone.
+// colours; the workload makes its picture of them (traces::TruthMethod). Hazards are differences to the frame in
+// submission order, never to this alone.
 //
-// Not modelled: workloads whose picture depends on the order of submission or on the k-buffer's program (blended, depth
-// of field, isosurfaces, volumes, particles, programs that a user wrote).
+// Not modelled: pictures that depend on the order of submission or on what a k-buffer's program kept; workloads that
+// make such ones declare no truth.
 #pragma once
 
 #include "pipeline/frame.hpp"
@@ -48,36 +47,27 @@ struct TruthCounts {
 };
 static_assert(sim::fully_described<TruthCounts>);
 
-/// Row 0 first.
-struct Truth {
-    std::uint32_t width = 0, height = 0; ///< pixels
+/// The workload's picture, and what every truth knows besides.
+struct Truth : traces::TruthPicture {
     std::uint32_t layers = 0;            ///< as asked for
     std::vector<std::uint32_t> surfaces; ///< fragments of each pixel, the opaque one included
     std::vector<float> depths;     ///< `layers` a pixel: distance along the view axis, nearest first; 0 behind the last
-    std::vector<float> colours;    ///< linear RGBA
-    std::vector<float> inside;     ///< translucency: length inside all objects
-    std::vector<float> solid;      ///< CSG: distance of the solid along the view axis, where there is one
     std::vector<float> visibility; ///< with a light: its visible share, 1 where nothing is seen
     std::vector<std::uint8_t> marks; ///< of each pixel
     TruthCounts counts;
 
-    static constexpr std::uint8_t doubtful_mark = 1, opaque_mark = 2, solid_mark = 4;
+    static constexpr std::uint8_t doubtful_mark = 1, opaque_mark = 2;
 
-    std::size_t pixels() const { return std::size_t{width} * height; }
     /// See PixelSurfaces.
     bool doubtful(std::size_t pixel) const { return (marks[pixel] & doubtful_mark) != 0; }
-    bool has_solid(std::size_t pixel) const { return (marks[pixel] & solid_mark) != 0; }
     /// Fragments for the k-buffer.
     std::uint32_t layers_at(std::size_t pixel) const {
         return surfaces[pixel] - ((marks[pixel] & opaque_mark) != 0 ? 1 : 0);
     }
 };
 
-/// Throws sim::InputError where there is no truth of this frame's workload.
-void check_truth(const pipeline::Frame& frame);
-
-/// `scene` has the draws of the frame. The same bytes for any number of threads.
-Truth trace_truth(const pipeline::Frame& frame, const RayScene& scene, const TruthPlan& plan = {},
-                  const TracingOptions& options = {});
+/// `frame` is the method's, where it has one; `scene` has its draws. The same bytes for any number of threads.
+Truth trace_truth(const pipeline::Frame& frame, const RayScene& scene, const traces::TruthMethod& method,
+                  const TruthPlan& plan = {}, const TracingOptions& options = {});
 
 } // namespace reports

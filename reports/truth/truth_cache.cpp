@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::string_view magic = "ropsim truth 1\n"; // the number is that of the format
+constexpr std::string_view magic = "ropsim truth 2\n"; // the number is that of the format
 constexpr std::size_t checksum_digits = 16;
 
 /// Every part of a truth, in the order of the file.
@@ -28,10 +28,14 @@ void for_each_part(T& truth, Take take) {
     take(truth.surfaces);
     take(truth.depths);
     take(truth.colours);
-    take(truth.inside);
-    take(truth.solid);
     take(truth.visibility);
     take(truth.marks);
+    for (auto& channel : truth.channels) {
+        take(channel.name);
+        take(channel.quantity);
+        take(channel.values);
+        take(channel.known);
+    }
 }
 
 std::string hash_of(std::string_view text) {
@@ -51,6 +55,7 @@ std::string content_of(const std::string& key, const Truth& truth) {
     append(content, truth.width);
     append(content, truth.height);
     append(content, truth.layers);
+    append(content, std::uint64_t{truth.channels.size()});
     append(content, truth.counts);
     for_each_part(truth, [&](const auto& part) {
         append(content, std::uint64_t{part.size()});
@@ -68,14 +73,18 @@ class Reader {
     void read(T& value) {
         take(&value, sizeof(T));
     }
-    template <class T>
-    void read(std::vector<T>& part) {
+    template <class Sequence>
+    void read_sequence(Sequence& part) {
+        const std::uint64_t count = read_count(sizeof(part[0]));
+        part.resize(count);
+        take(part.data(), count * sizeof(part[0]));
+    }
+    /// Of things that take so many bytes each at least; 0 where there cannot be so many.
+    std::uint64_t read_count(std::size_t bytes) {
         std::uint64_t count = 0;
         read(count);
-        good_ = good_ && count <= content_.size() / sizeof(T);
-        if (!good_) return;
-        part.resize(count);
-        take(part.data(), count * sizeof(T));
+        good_ = good_ && count <= content_.size() / bytes;
+        return good_ ? count : 0;
     }
     bool expect(std::string_view text) {
         good_ = good_ && content_.starts_with(text);
@@ -109,19 +118,20 @@ std::optional<Truth> truth_of(std::string_view file, const std::string& key) {
     reader.read(truth.width);
     reader.read(truth.height);
     reader.read(truth.layers);
+    truth.channels.resize(reader.read_count(sizeof(std::uint64_t)));
     reader.read(truth.counts);
-    for_each_part(truth, [&](auto& part) { reader.read(part); });
+    for_each_part(truth, [&](auto& part) { reader.read_sequence(part); });
+    for (traces::TruthChannel& channel : truth.channels) channel.everywhere = channel.known.empty();
     return reader.finished() ? std::optional(std::move(truth)) : std::nullopt;
 }
 
 } // namespace
 
-std::string truth_key(const std::string& scene_hash, const pipeline::Frame& frame,
-                      std::span<const std::string> settings, const TruthPlan& plan) {
+std::string truth_key(const std::string& scene_hash, const pipeline::Frame& frame, const std::string& method_key,
+                      const TruthPlan& plan) {
     std::string content(magic);
-    content +=
-        fmt::format("{} {}\n{}\n{}\n", ropsim_build::version, ropsim_build::git_describe, scene_hash, frame.workload);
-    for (const std::string& setting : settings) content += setting + '\n';
+    content += fmt::format("{} {}\n{}\n{}\n{}\n", ropsim_build::version, ropsim_build::git_describe, scene_hash,
+                           frame.workload, method_key);
     append(content, frame.view.view);
     append(content, frame.view.projection);
     for (const std::uint32_t number : {frame.view.width, frame.view.height, plan.layers}) append(content, number);

@@ -1,22 +1,21 @@
 // Truth kept from run to run: computed once for a content, a file after that.
 //
 // The name of a file is a hash of everything that the truth follows from: what the scene was read from, view, workload
-// with its settings, what is asked of the rays, and the build of ropsim. Files are complete or not there, carry a
-// checksum, and are never needed: what cannot be read is computed again.
+// with what its truth follows from, what is asked of the rays, and the build of ropsim. Files are complete or not
+// there, carry a checksum, and are never needed: what cannot be read is computed again.
 #pragma once
 
 #include "reports/truth/truth.hpp"
 
 #include <filesystem>
 #include <optional>
-#include <span>
 #include <string>
 
 namespace reports {
 
-/// 16 hexadecimal digits. `settings`: of the workload.
-std::string truth_key(const std::string& scene_hash, const pipeline::Frame& frame,
-                      std::span<const std::string> settings, const TruthPlan& plan);
+/// 16 hexadecimal digits. `method_key`: traces::TruthMethod::key.
+std::string truth_key(const std::string& scene_hash, const pipeline::Frame& frame, const std::string& method_key,
+                      const TruthPlan& plan);
 
 class TruthCache {
   public:

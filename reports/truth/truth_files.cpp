@@ -86,8 +86,8 @@ void write_images(const TruthRun& run, const fs::path& directory) {
     write_png(directory / "overlap.png", overlap_picture(size_of(truth), truth.surfaces));
     write_numbers(directory / "overlap.exr", truth, {"fragments"}, {truth.surfaces.begin(), truth.surfaces.end()});
     write_layers(run, directory);
-    if (!truth.inside.empty()) write_numbers(directory / "inside.exr", truth, {"length"}, truth.inside);
-    if (!truth.solid.empty()) write_numbers(directory / "solid.exr", truth, {"distance"}, truth.solid);
+    for (const traces::TruthChannel& channel : truth.channels)
+        write_numbers(directory / (channel.name + ".exr"), truth, {channel.quantity}, channel.values);
     if (!truth.visibility.empty()) write_visibility(truth, directory);
 }
 

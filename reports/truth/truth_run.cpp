@@ -35,16 +35,16 @@ void trace(const Supervision& supervision, TruthRun& run) {
     const Stopwatch watch;
     const RayScene scene(run.frame->resources, run.frame->draws);
     run.build_seconds = watch.seconds();
-    run.truth = trace_truth(*run.frame, scene, run.plan, {run.threads, supervision.stop, share_of(supervision)});
+    run.truth =
+        trace_truth(*run.frame, scene, run.method, run.plan, {run.threads, supervision.stop, share_of(supervision)});
     run.tracing_seconds = watch.seconds() - run.build_seconds;
 }
 
-void trace_or_find(const TruthRequest& request, const std::vector<std::string>& settings,
-                   const Supervision& supervision, TruthRun& run) {
+void trace_or_find(const TruthRequest& request, const Supervision& supervision, TruthRun& run) {
     const auto folder = request.use_cache ? TruthCache::usual_folder() : std::nullopt;
     if (!folder) return trace(supervision, run);
     const TruthCache cache(*folder);
-    const std::string key = truth_key(run.scene.hash, *run.frame, settings, run.plan);
+    const std::string key = truth_key(run.scene.hash, *run.frame, *run.method.key, run.plan);
     TruthCache::Found found = cache.find(key);
     run.cached = found.truth.has_value();
     if (!found.note.empty()) run.notes.push_back(found.note);
@@ -65,14 +65,14 @@ void check(const Supervision& supervision, TruthRun& run) {
     const auto streams = pipeline::rasterize_frame(*run.frame, options);
     enter(supervision, Progress::Phase::reference);
     const pipeline::ReferenceImage reference = pipeline::run_reference(*run.frame, streams, 1, run.threads);
-    run.errors = errors_of_reference(run.truth, *run.frame, reference);
+    run.errors = errors_of_reference(run.truth, run.method, *run.frame, reference);
     std::set<std::uint32_t> wrong;
     for (const TruthError& error : run.errors) wrong.insert(error.wrong_at.begin(), error.wrong_at.end());
     if (wrong.empty()) return;
     // Few pixels are wrong, so only these are asked whether anybody could know better.
     const RayScene scene(run.frame->resources, run.frame->draws);
     mark_uncertain(run.truth, *run.frame, scene, std::vector<std::uint32_t>(wrong.begin(), wrong.end()));
-    run.errors = errors_of_reference(run.truth, *run.frame, reference);
+    run.errors = errors_of_reference(run.truth, run.method, *run.frame, reference);
 }
 
 } // namespace
@@ -107,24 +107,20 @@ TruthRun run_truth(const TruthRequest& request, const Supervision& supervision) 
     const Stopwatch watch;
     enter(supervision, Progress::Phase::reading);
     check_light(request.plan);
-    traces::WorkloadOptions options;
-    for (const std::string& setting : request.workload_settings) options.set(setting);
+    const auto options = traces::WorkloadOptions::of(request.workload_settings);
     const traces::Scene scene = traces::load_scene(request.scene);
     std::vector<std::string> notes;
     const pipeline::View view = traces::make_view(scene, request.camera, request.width, request.height, &notes);
     TruthRun run;
     run.frame = std::make_shared<const pipeline::Frame>(traces::build_frame(scene, view, request.workload, options));
+    run.method = traces::truth_method(scene, *run.frame, request.workload, options);
+    if (!run.method.key) run.method.key = options.values.dump();
     run.plan = request.plan;
-    bool settings_matter = true;
-    if (run.frame->light) { // what is lit follows from the surfaces that the eye sees, whatever the shadows' method
-        if (!run.plan.light) run.plan.light = run.frame->light;
-        run.frame = std::make_shared<const pipeline::Frame>(traces::build_frame(scene, view, "opaque"));
-        settings_matter = false;
-    }
-    check_truth(*run.frame);
+    if (!run.plan.light) run.plan.light = run.method.light;
+    if (run.method.frame) run.frame = run.method.frame;
     run.scene = facts_of(scene, request.camera, *run.frame, notes);
     run.threads = request.threads == 0 ? core_count() : request.threads;
-    trace_or_find(request, settings_matter ? request.workload_settings : std::vector<std::string>{}, supervision, run);
+    trace_or_find(request, supervision, run);
     if (request.check) check(supervision, run);
     run.seconds = watch.seconds();
     return run;

@@ -5,6 +5,7 @@
 #include "reports/text_table.hpp"
 #include "reports/truth/against_truth.hpp"
 #include "reports/truth/truth.hpp"
+#include "traces/workloads.hpp"
 
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -17,7 +18,7 @@ struct TruthRequest {
     std::string scene;           ///< as traces::load_scene takes it
     std::string camera = "auto"; ///< as traces::make_view takes it
     std::uint32_t width = 512, height = 512;
-    std::string workload = "transparency";
+    traces::WorkloadChoice workload;
     std::vector<std::string> workload_settings; ///< "key=value"
     TruthPlan plan;
     bool check = false;    ///< also rasterize the frame in submission order and compare
@@ -27,8 +28,9 @@ struct TruthRequest {
 
 struct TruthRun {
     SceneFacts scene;
-    std::shared_ptr<const pipeline::Frame> frame;
+    std::shared_ptr<const pipeline::Frame> frame; ///< whose surfaces were traced
     TruthPlan plan;
+    traces::TruthMethod method;
     Truth truth;
     std::vector<TruthError> errors; ///< of the frame in submission order, where that was asked for
     std::vector<std::string> notes; ///< about the cache

@@ -154,8 +154,9 @@ BENCHMARK(area_light)->ArgName("threads")->Arg(1)->Arg(2)->Unit(benchmark::kMill
 void truth_of_transparency(benchmark::State& state) {
     const pipeline::Frame frame =
         traces::build_frame(setting().scene, traces::make_view(setting().scene, "auto", 512, 512), "transparency");
+    const traces::TruthMethod method = traces::truth_method(setting().scene, frame, "transparency");
     std::uint64_t hits = 0;
-    for (auto _ : state) hits = reports::trace_truth(frame, setting().rays, {}, {.threads = 1}).counts.surfaces;
+    for (auto _ : state) hits = reports::trace_truth(frame, setting().rays, method, {}, {.threads = 1}).counts.surfaces;
     count_rays(state, 512 * 512);
     state.counters["hits"] = benchmark::Counter(static_cast<double>(hits));
 }

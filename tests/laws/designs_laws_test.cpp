@@ -84,7 +84,7 @@ Settings join(Settings settings, const Settings& more) {
 }
 
 std::string describe(const Case& one, const std::string& design, const Settings& settings) {
-    return fmt::format("{} {} on {} {} {}, {} samples", design, fmt::join(settings, " "), one.options.workload,
+    return fmt::format("{} {} on {} {} {}, {} samples", design, fmt::join(settings, " "), one.options.workload.name(),
                        one.scene, fmt::join(one.options.knobs, " "), one.options.samples);
 }
 

@@ -1,6 +1,7 @@
 // What must hold for the source tree: who may include whom, how long files are, which words stand where.
 #include "models/kbuffers/library.hpp"
 #include "tests/support/paths.hpp"
+#include "traces/workloads.hpp"
 
 #include <algorithm>
 #include <array>
@@ -12,6 +13,7 @@
 #include <regex>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -149,6 +151,45 @@ TEST(SourceTree, EveryDesignIsAFileOfItsOwn) {
         EXPECT_FALSE(design.summary.empty());
         EXPECT_FALSE(design.parameters().empty()) << name;
     }
+}
+
+// A workload declares what others need to know of it (traces/workloads.hpp).
+TEST(SourceTree, OnlyTracesNamesWorkloads) {
+    // Words that also mean something else, and what.
+    const std::map<std::pair<std::string, std::string>, std::string> allowed{
+        {{"pipeline/functional/validate.cpp", "geometry"}, "a part of a draw"},
+        {{"reports/geometry/measurements.cpp", "geometry"}, "what is calibrated and validated"},
+        {{"reports/validation/choices.cpp", "geometry"}, "what is calibrated and validated"},
+        {{"reports/peeling/published.hpp", "volume"}, "how a mesh grows"},
+        {{"cli/calibrate.cpp", "geometry"}, "what is calibrated"},
+        {{"cli/validate.cpp", "geometry"}, "what is validated"},
+        {{"cli/command_line.cpp", "geometry"}, "a subcommand"},
+    };
+    auto unused = allowed;
+    const std::regex comment(R"((^|\s)//.*)"), own_files(R"(#include "traces/workloads/)");
+    std::size_t seen = 0;
+    for (const char* folder : {"pipeline", "reports", "cli"})
+        for (const File& file : sources_below(folder))
+            for (const std::string& line : file.lines) {
+                ++seen;
+                // The catalogue of stability counts the digits of formulas, wherever they stand.
+                EXPECT_TRUE(file.name.starts_with("reports/stability/") || !std::regex_search(line, own_files))
+                    << file.name << ": " << line;
+                const std::string code = std::regex_replace(line, comment, "");
+                for (const traces::Workload& workload : traces::workloads()) {
+                    const bool one_word = workload.id.find('-') == std::string::npos;
+                    const bool named = code.find(fmt::format("\"{}\"", workload.id)) != std::string::npos ||
+                                       code.find(fmt::format("workload {}", workload.id)) != std::string::npos ||
+                                       code.find(fmt::format("workload={}", workload.id)) != std::string::npos ||
+                                       (!one_word && line.find(workload.id) != std::string::npos);
+                    if (!named) continue;
+                    EXPECT_TRUE(allowed.contains({file.name, workload.id})) << file.name << ": " << line;
+                    unused.erase({file.name, workload.id});
+                }
+            }
+    for (const auto& [place, meaning] : unused)
+        ADD_FAILURE() << place.first << " no longer says '" << place.second << "': take it off the list";
+    EXPECT_GT(seen, 20'000U);
 }
 
 TEST(SourceTree, TextSpeaksOfTheProjectOnly) {

@@ -90,7 +90,7 @@ TEST(LeaveOut, EveryFrameAndDesignBuildsWhatItNeedsAndNothingElse) {
     for (const Expectation& expected : expectations()) {
         const Replay replay(expected.scene, expected.options);
         for (const std::string& design : designs_of(replay)) {
-            SCOPED_TRACE(fmt::format("{} on {} of {}", design, expected.options.workload, expected.scene));
+            SCOPED_TRACE(fmt::format("{} on {} of {}", design, expected.options.workload.name(), expected.scene));
             ASSERT_TRUE(of_design.contains(design)) << "this test does not know the units of " << design;
             Units wanted = always;
             wanted.insert(expected.units.begin(), expected.units.end());
@@ -116,7 +116,7 @@ TEST(LeaveOut, EveryUnitIsBuiltOrLeftOutWithAReason) {
     for (const Expectation& expected : expectations()) {
         const Replay replay(expected.scene, expected.options);
         for (const std::string& design : designs_of(replay)) {
-            SCOPED_TRACE(fmt::format("{} on {} of {}", design, expected.options.workload, expected.scene));
+            SCOPED_TRACE(fmt::format("{} on {} of {}", design, expected.options.workload.name(), expected.scene));
             const RunResult run = replay.run(design);
             const Units built = units_of(run.built), left_out = names_of(run.left_out);
             EXPECT_EQ(built.size(), run.built.size());
@@ -220,7 +220,7 @@ TEST(LeaveOut, BuildingEverythingChangesNeitherPictureNorCounts) {
     for (const Expectation& expected : expectations()) {
         const Replay replay(expected.scene, expected.options);
         for (const std::string& design : designs_of(replay)) {
-            SCOPED_TRACE(fmt::format("{} on {} of {}", design, expected.options.workload, expected.scene));
+            SCOPED_TRACE(fmt::format("{} on {} of {}", design, expected.options.workload.name(), expected.scene));
             const RunResult lean = replay.run(design);
             const RunResult full = replay.run(design, {}, {.build_everything = true});
             EXPECT_GE(full.built.size(), lean.built.size());

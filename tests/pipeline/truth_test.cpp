@@ -20,9 +20,28 @@ using support::ReplayOptions;
 
 class TruthTest : public support::RayTest {};
 
-Truth truth_of(const pipeline::Frame& frame, unsigned threads = 0) {
-    const reports::RayScene scene(frame.resources, frame.draws);
-    return reports::trace_truth(frame, scene, {}, {.threads = threads});
+struct Traced {
+    traces::TruthMethod method;
+    Truth truth;
+};
+
+traces::TruthMethod method_of(const Replay& replay) {
+    return traces::truth_method(replay.scene, replay.frame, replay.options.workload,
+                                traces::WorkloadOptions::of(replay.options.knobs));
+}
+
+Traced traced(const Replay& replay) {
+    const reports::RayScene scene(replay.frame.resources, replay.frame.draws);
+    traces::TruthMethod method = method_of(replay);
+    Truth truth = reports::trace_truth(replay.frame, scene, method);
+    return {std::move(method), std::move(truth)};
+}
+
+Truth truth_of(const Replay& replay) { return traced(replay).truth; }
+
+std::vector<TruthError> errors_of(const Replay& replay) {
+    const Traced beside = traced(replay);
+    return reports::errors_of_reference(beside.truth, beside.method, replay.frame, replay.reference);
 }
 
 std::string text_of(const TruthError& error) {
@@ -32,7 +51,7 @@ std::string text_of(const TruthError& error) {
 
 /// Every layer and the picture; at least `pixels` pixels are compared in the picture. Exclusions stay exceptions.
 void expect_truth(const Replay& replay, std::uint64_t pixels, double most_doubtful = 0.05) {
-    const auto errors = reports::errors_of_reference(truth_of(replay.frame), replay.frame, replay.reference);
+    const auto errors = errors_of(replay);
     ASSERT_FALSE(errors.empty());
     for (const TruthError& error : errors) {
         // Of few pixels a thousandth is less than what one silhouette brings.
@@ -59,7 +78,7 @@ TEST_F(TruthTest, OneSidedMaterialsLoseTheirBacks) {
     const Replay both = transparent("gen:blob?triangles=5000", 128, {"k=16"});
     const Replay fronts = transparent("gen:blob?triangles=5000", 128, {"k=16", "faces=material"});
     expect_truth(fronts, 2000);
-    const auto surfaces = [](const Replay& replay) { return truth_of(replay.frame).counts.surfaces; };
+    const auto surfaces = [](const Replay& replay) { return truth_of(replay).counts.surfaces; };
     EXPECT_EQ(surfaces(both) % 2, 0U);
     EXPECT_LE(surfaces(fronts), surfaces(both));
 }
@@ -74,7 +93,8 @@ TEST_F(TruthTest, SolidsAreWhereTheFrameHasThem) {
         const Replay replay(
             "gen:csg",
             {.width = 192, .height = 192, .workload = "csg", .knobs = {fmt::format("expression={}", expression)}});
-        const auto error = reports::solid_error(truth_of(replay.frame), replay.frame, replay.reference.kbuffer);
+        const Traced beside = traced(replay);
+        const auto error = reports::distance_error(beside.truth, beside.method, replay.frame, replay.reference.kbuffer);
         EXPECT_TRUE(error.holds()) << text_of(error);
         EXPECT_GT(error.compared, 1000U);
     }
@@ -84,7 +104,7 @@ TEST_F(TruthTest, SolidsAreWhereTheFrameHasThem) {
 TEST_F(TruthTest, SolidsAreWhereIntervalLogicHasThem) {
     const Replay replay("gen:csg?segments=512",
                         {.width = 96, .height = 96, .workload = "csg", .knobs = {"expression=A & B"}});
-    const Truth truth = truth_of(replay.frame);
+    const Truth truth = truth_of(replay);
     std::size_t compared = 0;
     for (std::uint32_t y = 0; y < 96; ++y)
         for (std::uint32_t x = 0; x < 96; ++x) {
@@ -95,9 +115,9 @@ TEST_F(TruthTest, SolidsAreWhereIntervalLogicHasThem) {
             if (std::fabs(leave - enter) < 0.03) continue;
             const std::size_t pixel = std::size_t{y} * 96 + x;
             const bool inside = !sphere.empty() && !cube.empty() && enter < leave;
-            ASSERT_EQ(truth.has_solid(pixel), inside) << x << ' ' << y;
+            ASSERT_EQ(truth.channels[0].has(pixel), inside) << x << ' ' << y;
             if (!inside) continue;
-            EXPECT_NEAR(static_cast<double>(truth.solid[pixel]), enter, 1e-4 * enter) << x << ' ' << y;
+            EXPECT_NEAR(static_cast<double>(truth.channels[0].values[pixel]), enter, 1e-4 * enter) << x << ' ' << y;
             ++compared;
         }
     EXPECT_GT(compared, 500U);
@@ -109,7 +129,7 @@ TEST_F(TruthTest, LengthsInsideParallelSlabsAreThoseOfTheirRays) {
                                       .workload = "translucency",
                                       .camera = "0.7,0.5,5,0,0,-0.6,25",
                                       .knobs = {"sigma=[2,0.25]"}});
-    const Truth truth = truth_of(replay.frame);
+    const Truth truth = truth_of(replay);
     std::size_t compared = 0;
     for (std::uint32_t y = 0; y < 96; ++y)
         for (std::uint32_t x = 0; x < 96; ++x) {
@@ -122,7 +142,7 @@ TEST_F(TruthTest, LengthsInsideParallelSlabsAreThoseOfTheirRays) {
             if (std::fabs(a.leave - a.enter) < 0.01 || std::fabs(b.leave - b.enter) < 0.01) continue;
             const std::size_t pixel = std::size_t{y} * 96 + x;
             const double known = length(a) + length(b);
-            EXPECT_NEAR(static_cast<double>(truth.inside[pixel]), known, 1e-4 * known) << x << ' ' << y;
+            EXPECT_NEAR(static_cast<double>(truth.channels[0].values[pixel]), known, 1e-4 * known) << x << ' ' << y;
             EXPECT_NEAR(static_cast<double>(truth.colours[4 * pixel]), std::exp(-2.0 * length(a) - 0.25 * length(b)),
                         1e-5);
             compared += known > 0.0;
@@ -144,7 +164,7 @@ TEST_F(TruthTest, EveryNumberOfThreadsGivesTheSameBytes) {
         reports::TruthPlan plan;
         plan.light = {{0.0, 5.0, 0.0}, {0.5, 0.0, 0.0}, {0.0, 0.0, 0.5}};
         plan.sampling.rays = 16;
-        return reports::trace_truth(replay.frame, scene, plan, {.threads = threads});
+        return reports::trace_truth(replay.frame, scene, method_of(replay), plan, {.threads = threads});
     };
     const Truth one = run(1);
     for (const unsigned threads : {2U, 5U}) {
@@ -162,17 +182,18 @@ TEST_F(TruthTest, EveryNumberOfThreadsGivesTheSameBytes) {
 // The rules must be able to fail.
 TEST_F(TruthTest, WrongLayersAndColoursAreFound) {
     Replay replay = transparent("gen:slabs", 128, {"k=4"});
-    const Truth truth = truth_of(replay.frame);
+    const Traced beside = traced(replay);
     for (float& value : replay.reference.kbuffer)
         if (value < 1.0F) value *= 0.999F; // depths among them
     for (std::size_t i = 0; i < replay.reference.picture.size(); ++i) replay.reference.picture[i] += 0.01F;
-    for (const TruthError& error : reports::errors_of_reference(truth, replay.frame, replay.reference))
+    for (const TruthError& error :
+         reports::errors_of_reference(beside.truth, beside.method, replay.frame, replay.reference))
         EXPECT_FALSE(error.holds()) << text_of(error);
 }
 
 TEST_F(TruthTest, PixelsOverKAreLeftOutOfTheColours) {
     const Replay replay = transparent("gen:slabs", 128, {"k=2"});
-    const auto error = reports::colour_error(truth_of(replay.frame), replay.frame, replay.reference.picture);
+    const auto error = reports::colour_error(truth_of(replay), replay.frame, replay.reference.picture);
     EXPECT_GT(error.overflown, 1000U);
     EXPECT_GT(error.compared, 500U);
     EXPECT_TRUE(error.holds()) << text_of(error);
@@ -181,14 +202,14 @@ TEST_F(TruthTest, PixelsOverKAreLeftOutOfTheColours) {
 TEST_F(TruthTest, WorkloadsWithoutATruthAreRefused) {
     const auto message = [](const std::string& scene, const ReplayOptions& options) -> std::string {
         try {
-            reports::check_truth(Replay(scene, options).frame);
+            method_of(Replay(scene, options));
         } catch (const sim::InputError& error) {
             return error.what();
         }
         return "";
     };
     EXPECT_EQ(message("gen:slabs", {.workload = "blended"}),
-              "truth: expected a workload of transparency, translucency, csg, opaque, got blended");
+              "truth: expected a workload of transparency, opaque, translucency, csg, soft-shadows, got blended");
     EXPECT_EQ(message("gen:slabs", {.knobs = {"entry=z"}}),
               "truth: workload transparency: entry: expected rgbz, the one that has colours");
     EXPECT_EQ(message("gen:slabs", {}), "");

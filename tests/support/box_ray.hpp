@@ -2,7 +2,7 @@
 #pragma once
 
 #include "pipeline/draw.hpp"
-#include "traces/workloads/view_rays.hpp"
+#include "traces/view_rays.hpp"
 
 #include <algorithm>
 #include <cmath>

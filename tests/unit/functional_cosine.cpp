@@ -3,7 +3,7 @@
 #include "pipeline/functional/shader.hpp"
 #include "traces/camera.hpp"
 #include "traces/scene.hpp"
-#include "traces/workloads/view_rays.hpp"
+#include "traces/view_rays.hpp"
 
 #include <cmath>
 #include <functional>

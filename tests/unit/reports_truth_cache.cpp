@@ -24,6 +24,7 @@ Truth sample() {
     truth.depths = {1.5F, 2.5F, 0.0F, 0.0F};
     truth.colours = {0.1F, 0.2F, 0.3F, 1.0F, 1.0F, 1.0F, 1.0F, 1.0F};
     truth.visibility = {0.25F, 1.0F};
+    truth.channels = {{"solid", "distance", false, {2.5F, 0.0F}, {1, 0}}, {"inside", "length", true, {0.5F, 1.0F}}};
     truth.marks = {1, 0};
     truth.counts.surfaces = 3;
     truth.counts.light_rays = 1024;
@@ -45,7 +46,15 @@ TEST(TruthCache, GivesBackWhatItWasGiven) {
     EXPECT_EQ(found->depths, sample().depths);
     EXPECT_EQ(found->colours, sample().colours);
     EXPECT_EQ(found->visibility, sample().visibility);
-    EXPECT_EQ(found->inside, sample().inside);
+    ASSERT_EQ(found->channels.size(), 2U);
+    for (std::size_t i = 0; i < 2; ++i) {
+        const traces::TruthChannel kept = found->channels[i], given = sample().channels[i];
+        EXPECT_EQ(kept.name, given.name);
+        EXPECT_EQ(kept.quantity, given.quantity);
+        EXPECT_EQ(kept.everywhere, given.everywhere);
+        EXPECT_EQ(kept.values, given.values);
+        EXPECT_EQ(kept.known, given.known);
+    }
     EXPECT_EQ(found->marks, sample().marks);
     EXPECT_EQ(found->counts.light_rays, 1024U);
     EXPECT_FALSE(cache.find("0123456789abcdee").truth);
@@ -93,16 +102,15 @@ TEST(TruthCache, EveryParameterIsPartOfTheKey) {
     plans[3].sampling.seed = 2;
     plans[4].light->u.x = 1.0;
     std::set<std::string> keys;
-    for (const auto& other : plans) keys.insert(reports::truth_key("a", slabs, {}, other));
-    keys.insert(reports::truth_key("a", slabs, {}, plan));
-    keys.insert(reports::truth_key("b", slabs, {}, plan));
-    keys.insert(reports::truth_key("a", frame("translucency", 16), {}, plan));
-    keys.insert(reports::truth_key("a", frame("transparency", 17), {}, plan));
-    const std::vector<std::string> one{"opacity=0.5"}, other{"opacity=0.25"};
-    keys.insert(reports::truth_key("a", slabs, one, plan));
-    keys.insert(reports::truth_key("a", slabs, other, plan));
+    for (const auto& other : plans) keys.insert(reports::truth_key("a", slabs, "", other));
+    keys.insert(reports::truth_key("a", slabs, "", plan));
+    keys.insert(reports::truth_key("b", slabs, "", plan));
+    keys.insert(reports::truth_key("a", frame("translucency", 16), "", plan));
+    keys.insert(reports::truth_key("a", frame("transparency", 17), "", plan));
+    keys.insert(reports::truth_key("a", slabs, "opacity=0.5", plan));
+    keys.insert(reports::truth_key("a", slabs, "opacity=0.25", plan));
     EXPECT_EQ(keys.size(), 11U);
-    EXPECT_EQ(reports::truth_key("a", slabs, {}, plan), reports::truth_key("a", slabs, {}, plan));
+    EXPECT_EQ(reports::truth_key("a", slabs, "", plan), reports::truth_key("a", slabs, "", plan));
 }
 
 } // namespace reports_truth_cache_test

@@ -25,14 +25,14 @@ std::vector<T> values_of(InputBytes& file, std::size_t count, std::string_view w
     return values;
 }
 
-bool is_finite(const glm::vec3& point) {
+bool has_place(const glm::vec3& point) {
     return std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z);
 }
 
 void check_values(const InputBytes& file, const TetrahedralMesh& mesh) {
     const std::size_t vertices = mesh.positions.size();
     for (std::size_t i = 0; i < vertices; ++i) {
-        file.require_at_byte(is_finite(mesh.positions[i]), "a position of finite numbers, got vertex {}", i);
+        file.require_at_byte(has_place(mesh.positions[i]), "a position of finite numbers, got vertex {}", i);
         file.require_at_byte(std::isfinite(mesh.scalars[i]), "a finite scalar, got {} at vertex {}", mesh.scalars[i],
                              i);
     }

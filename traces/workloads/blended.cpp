@@ -3,6 +3,7 @@
 //
 // Source: Bavoil 2007, sections 2.1.2 and 4.3.1 (specification 004, section 1, rules 1 and 2).
 #include "pipeline/output/kbuffer_design.hpp" // names of the depth formats
+#include "traces/loads.hpp"
 #include "traces/pass_graph.hpp"
 #include "traces/workloads/methods.hpp"
 
@@ -59,5 +60,7 @@ Workload blended_workload() {
     return make_workload<BlendedParams>("blended", "every draw blended in submission order by the fixed-function ROP",
                                         build);
 }
+
+Load blending_load(const std::string& colour_format) { return {"blended", {"colour_format=" + colour_format}}; }
 
 } // namespace traces

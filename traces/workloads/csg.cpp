@@ -34,28 +34,65 @@ std::string expression_of(const CsgParams& params, std::size_t draws) {
     return all;
 }
 
+CsgExpression read_expression(const CsgParams& params, std::size_t draws) {
+    return {expression_of(params, draws), static_cast<std::uint32_t>(draws)};
+}
+
 pipeline::Frame build(const Scene& scene, const pipeline::View& view, const CsgParams& params) {
     pipeline::Frame frame = frame_of(scene, view);
-    const auto objects = static_cast<std::uint32_t>(frame.draws.size());
-    frame.resolve =
-        std::make_shared<const CsgPicture>(CsgExpression(expression_of(params, frame.draws.size()), objects));
+    frame.resolve = std::make_shared<const CsgPicture>(read_expression(params, frame.draws.size()));
     frame.program = models::make_nearest_k(models::EntryKind::zo, params.k);
     frame.background = {params.background[0], params.background[1], params.background[2], 1.0F};
     return kbuffer_frame(std::move(frame));
 }
 
+std::vector<std::optional<double>> distances_of(const CsgSurface& surface) {
+    std::vector<std::optional<double>> distances;
+    distances.reserve(surface.objects.size());
+    for (std::uint32_t y = 0; y < surface.image.height(); ++y)
+        for (std::uint32_t x = 0; x < surface.image.width(); ++x)
+            distances.push_back(surface.image.sees(x, y) ? std::optional(surface.image.distance(x, y)) : std::nullopt);
+    return distances;
+}
+
+// The first point of the solid. Its picture needs the whole of it, as normals are differences of depths; these are
+// uncertain at every edge, so distances are compared and not colours.
+TruthMethod truth(const Scene&, const pipeline::Frame& frame, const CsgParams& params) {
+    const auto expression = std::make_shared<const CsgExpression>(read_expression(params, frame.draws.size()));
+    const auto solid = std::make_shared<CsgSurface>(
+        CsgSurface{SurfaceImage(frame.view), std::vector<std::uint32_t>(frame.view.pixels())});
+    TruthMethod method;
+    method.channels = {{"solid", "distance", false}};
+    method.pixel = [expression, solid](Rays& rays, const PixelSurfaces& surfaces, std::uint32_t x, std::uint32_t y,
+                                       TruthPicture& picture) {
+        CsgWalk walk(*expression, rays.frame().draws.size());
+        for (const FrameSurface& layer : surfaces.layers) {
+            if (!walk.cross(layer.draw)) continue;
+            const std::size_t pixel = picture.pixel(x, y);
+            picture.channels[0].set(pixel, layer.distance);
+            solid->image.set_distance(pixel, layer.distance);
+            solid->objects[pixel] = layer.draw;
+            return;
+        }
+    };
+    method.finish = [solid](const pipeline::Frame& drawn, TruthPicture& picture) {
+        picture.colours = CsgPicture::shaded(drawn, *solid);
+    };
+    method.rasterized = [expression](const pipeline::Frame& drawn, std::span<const float> kbuffer) {
+        return distances_of(csg_surface(drawn, kbuffer, *expression));
+    };
+    return method;
+}
+
 } // namespace
 
 Workload csg_workload() {
-    Workload workload = make_workload<CsgParams>(
-        "csg", "constructive solid geometry: the first point inside a Boolean expression of the draws", build);
-    // An expression that is one number reads as such.
-    workload.build = [build = std::move(workload.build)](const Scene& scene, const pipeline::View& view,
-                                                         WorkloadOptions options) {
-        if (options.values.contains("expression") && options.values["expression"].is_number())
-            options.values["expression"] = options.values["expression"].dump();
-        return build(scene, view, options);
-    };
+    Workload workload =
+        taking(make_workload<CsgParams>(
+                   "csg", "constructive solid geometry: the first point inside a Boolean expression of the draws",
+                   build, truth),
+               as_text, "expression"); // one that is a number reads as such
+    workload.examples = {{"truth", "gen:csg --workload csg --set 'workload.expression=A & !B' --check"}};
     return workload;
 }
 

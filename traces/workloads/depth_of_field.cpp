@@ -6,9 +6,9 @@
 #include "models/programs/depth_partition.hpp"
 #include "models/programs/nearest_k.hpp" // empty_depth
 #include "sim/check.hpp"
+#include "traces/view_rays.hpp"
 #include "traces/workloads/lens_blur.hpp"
 #include "traces/workloads/methods.hpp"
-#include "traces/workloads/view_rays.hpp"
 
 #include <cmath>
 

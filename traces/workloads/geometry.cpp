@@ -2,6 +2,7 @@
 //
 // Source: Bavoil 2007, section 3.2 (specification 004, section 2.2, W1).
 #include "pipeline/output/kbuffer_design.hpp" // names of the depth formats
+#include "traces/loads.hpp"
 #include "traces/pass_graph.hpp"
 #include "traces/workloads/methods.hpp"
 
@@ -55,6 +56,10 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const Geom
 Workload geometry_workload() {
     return make_workload<GeometryParams>(
         "geometry", "every draw with depth test and depth write in one colour: the load of the geometry feed", build);
+}
+
+Load geometry_feed_load(bool every_attribute) {
+    return {"geometry", {every_attribute ? "reads=all" : "reads=position"}};
 }
 
 } // namespace traces

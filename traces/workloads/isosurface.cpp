@@ -3,6 +3,7 @@
 //
 // Source: Bavoil 2007, section 6.3.1 (specification 004, A15).
 #include "models/programs/isosurface.hpp"
+#include "traces/loads.hpp"
 #include "traces/workloads/isosurface_picture.hpp"
 #include "traces/workloads/methods.hpp"
 #include "traces/workloads/scalar_field.hpp"
@@ -51,5 +52,7 @@ Workload isosurface_workload() {
                       "isosurface", "isosurfaces of a scalar field on tetrahedra, found between their faces", build),
                   as_list, "iso");
 }
+
+Load crossings_load() { return {"isosurface"}; }
 
 } // namespace traces

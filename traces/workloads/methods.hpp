@@ -22,18 +22,28 @@ Workload volume_workload();
 Workload particles_workload();
 Workload soft_shadows_workload();
 
-/// A row of the table of workloads; `build` takes (scene, view, parameters).
+/// A row of the table of workloads; `build` takes (scene, view, parameters), `truth` the frame in place of the view.
 template <sim::Described P>
 Workload make_workload(std::string id, std::string summary,
-                       pipeline::Frame (*build)(const Scene&, const pipeline::View&, const P&)) {
+                       pipeline::Frame (*build)(const Scene&, const pipeline::View&, const P&),
+                       TruthMethod (*truth)(const Scene&, const pipeline::Frame&, const P&) = nullptr) {
     const std::string place = fmt::format("workload {}", id);
-    return {std::move(id),
-            std::move(summary),
-            sim::describe<P>(),
-            [place, build](const Scene& scene, const pipeline::View& view, const WorkloadOptions& options) {
-                return build(scene, view, read_parameters<P>(options.values, place));
-            },
-            {}};
+    Workload workload;
+    workload.id = std::move(id);
+    workload.summary = std::move(summary);
+    workload.parameters = sim::describe<P>();
+    workload.build = [place, build](const Scene& scene, const pipeline::View& view, const WorkloadOptions& options) {
+        return build(scene, view, read_parameters<P>(options.values, place));
+    };
+    if (truth != nullptr)
+        workload.truth = [place, truth](const Scene& scene, const pipeline::Frame& frame,
+                                        const WorkloadOptions& options) {
+            const P parameters = read_parameters<P>(options.values, place);
+            TruthMethod method = truth(scene, frame, parameters);
+            if (!method.key) method.key = sim::to_json(parameters).dump();
+            return method;
+        };
+    return workload;
 }
 
 /// What frames of all workloads have in common: the scene with all its draws, seen through `view`.

@@ -1,5 +1,6 @@
 // Every draw with depth test and depth write, in one pass: the plain workload, with no k-buffer.
 #include "pipeline/output/kbuffer_design.hpp" // names of the depth formats
+#include "traces/loads.hpp"
 #include "traces/pass_graph.hpp"
 #include "traces/workloads/methods.hpp"
 
@@ -31,10 +32,15 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const Opaq
     return graph.lower();
 }
 
+TruthMethod truth(const Scene&, const pipeline::Frame&, const OpaqueParams&) { return layered_truth(); }
+
 } // namespace
 
 Workload opaque_workload() {
-    return make_workload<OpaqueParams>("opaque", "every draw with depth test and depth write; no k-buffer", build);
+    return make_workload<OpaqueParams>("opaque", "every draw with depth test and depth write; no k-buffer", build,
+                                       truth);
 }
+
+Load nearest_surface_load() { return {"opaque"}; }
 
 } // namespace traces

@@ -12,8 +12,8 @@
 #include "traces/pass_graph.hpp"
 #include "traces/screen_draw.hpp"
 #include "traces/shadows/shadow_passes.hpp"
+#include "traces/view_rays.hpp"
 #include "traces/workloads/methods.hpp"
-#include "traces/workloads/view_rays.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -295,7 +295,6 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const Soft
         }
     frame.program = models::make_nearest_k(models::EntryKind::z, params.k);
     frame.kbuffer_view = light.view(params.map_size);
-    frame.light = {light.centre, light.right * (light.width / 2.0), light.up * (light.width / 2.0)};
     const auto picture = std::make_shared<const ShadowPicture>(light, params);
     frame.resolve = picture;
     frame.depth_format = pipeline::DepthFormat::d32f;
@@ -329,20 +328,62 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const Soft
     return result;
 }
 
+// What is lit follows from the surfaces that the eye sees, whatever the shadows' method.
+TruthMethod truth(const Scene& scene, const pipeline::Frame& frame, const SoftShadowParams& params) {
+    TruthMethod method = layered_truth();
+    method.frame = std::make_shared<const pipeline::Frame>(build_frame(scene, frame.view, opaque_workload()));
+    method.light = make_area_light(scene, params.light, params.light_size, place).square();
+    method.key = "";
+    return method;
+}
+
+// Hard shadows of many point lights that share the area of one, each with its own map and its own kernel: what soft
+// shadow maps compete with. Source: Bavoil 2007, sections 1.2 and 5.1 (specification 004, section 3.5: more than a
+// hundred passes before banding disappears).
+std::vector<std::vector<std::string>> hard_shadows(const Scene& scene, const pipeline::Frame& frame,
+                                                   const WorkloadOptions& given, std::uint32_t count) {
+    WorkloadOptions options = given;
+    as_text(options, "light");
+    const auto params = read_parameters<SoftShadowParams>(options.values, place);
+    const SquareLight light = make_area_light(scene, params.light, params.light_size, place).square();
+    const glm::dvec3 forward = -glm::dvec3(glm::inverse(glm::dmat4(frame.kbuffer_view->view))[2]);
+    std::vector<std::string> shared{"method=hard", "light_size=0", "layers=1", "k=2"};
+    for (const char* key : {"map_size", "format", "bias", "uniform_bias", "gscale", "gmax"}) // what one layer knows
+        if (const auto value = options.values.find(key); value != options.values.end())
+            shared.push_back(fmt::format("{}={}", key, value->is_string() ? value->get<std::string>() : value->dump()));
+    std::vector<std::vector<std::string>> frames(count, shared);
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const glm::dvec3 at = spread_over(light, i, count), target = at + forward;
+        frames[i].push_back(fmt::format("light={},{},{},{},{},{}", at.x, at.y, at.z, target.x, target.y, target.z));
+    }
+    return frames;
+}
+
 } // namespace
 
 Workload soft_shadows_workload() {
-    return taking(make_workload<SoftShadowParams>(
-                      "soft-shadows", "shadows of a square light from a layered shadow map, captured by a k-buffer",
-                      build),
-                  as_text, "light")
-        .with({{"layers", {"1", "2", "3"}},
-               {"map_size", {"256", "512", "1024", "2048"}},
-               {"samples", {"9", "49", "169", "289", "441", "961", "1089"}},
-               {"iterations", {"0", "1", "2"}},
-               {"gscale", {"0", "1", "4", "10"}},
-               {"format", {"rgba16f", "rgba32f"}},
-               {"method", {"layered", "hard", "pcf"}}});
+    Workload workload =
+        taking(make_workload<SoftShadowParams>(
+                   "soft-shadows", "shadows of a square light from a layered shadow map, captured by a k-buffer", build,
+                   truth),
+               as_text, "light");
+    workload.measured = Measured::light;
+    workload.quality = {{"layers", {"1", "2", "3"}},
+                        {"map_size", {"256", "512", "1024", "2048"}},
+                        {"samples", {"9", "49", "169", "289", "441", "961", "1089"}},
+                        {"iterations", {"0", "1", "2"}},
+                        {"gscale", {"0", "1", "4", "10"}},
+                        {"format", {"rgba16f", "rgba32f"}},
+                        {"method", {"layered", "hard", "pcf"}}};
+    workload.averaging = Averaging{"hard shadows", {"clear", "eye"}, hard_shadows};
+    workload.options = {{"light", "LIGHT",
+                         "Square light of soft-shadows: auto, the number of a spot light of the scene, or "
+                         "px,py,pz,tx,ty,tz (place and target)"}};
+    workload.examples = {
+        {"accuracy", "scene.glb+ground --workload soft-shadows --out accuracy"},
+        {"accuracy", "scene.glb+ground --workload soft-shadows --sweep layers=1,2,3 --sweep samples=169,441"},
+        {"accuracy", "scene.glb+ground --workload soft-shadows --against 'layers=3 samples=1089'"}};
+    return workload;
 }
 
 } // namespace traces

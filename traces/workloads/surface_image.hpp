@@ -1,7 +1,7 @@
 // The one surface that every pixel sees, known by its distance only, and its shading from differences of distances.
 #pragma once
 
-#include "traces/workloads/view_rays.hpp"
+#include "traces/view_rays.hpp"
 
 #include <cstdint>
 #include <glm/glm.hpp>

@@ -67,13 +67,35 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const Tran
     return kbuffer_frame(std::move(frame), pipeline::FragmentColour::cosine);
 }
 
+// The shader gives cosines as colours.
+TruthMethod truth(const Scene&, const pipeline::Frame& frame, const TranslucencyParams& params) {
+    const auto medium =
+        std::make_shared<const TranslucencyPicture>(extinctions(params, frame.draws.size()), params.fresnel);
+    TruthMethod method;
+    method.channels = {{"inside", "length"}};
+    method.pixel = [medium](Rays& rays, const PixelSurfaces& surfaces, std::uint32_t x, std::uint32_t y,
+                            TruthPicture& picture) {
+        std::vector<TranslucentSurface> crossed;
+        for (const FrameSurface& layer : surfaces.layers)
+            crossed.push_back({layer.distance, layer.draw, layer.colour.r});
+        const auto passage = medium->passage(crossed, rays.view_rays(), x, y);
+        const std::size_t pixel = picture.pixel(x, y);
+        picture.channels[0].set(pixel, passage.inside);
+        picture.set_colour(pixel, glm::dvec3(glm::vec3(rays.frame().background)) * passage.transmittance);
+    };
+    return method;
+}
+
 } // namespace
 
 Workload translucency_workload() {
-    return taking(make_workload<TranslucencyParams>(
-                      "translucency", "light of the background, absorbed along its way through the objects", build),
-                  as_list, "sigma")
-        .with({{"k", {"2", "4", "8", "16", "32"}}});
+    Workload workload =
+        taking(make_workload<TranslucencyParams>(
+                   "translucency", "light of the background, absorbed along its way through the objects", build, truth),
+               as_list, "sigma");
+    workload.quality = {{"k", {"2", "4", "8", "16", "32"}}};
+    workload.examples = {{"truth", "gen:slabs --workload translucency --set workload.sigma=2 --check"}};
+    return workload;
 }
 
 } // namespace traces

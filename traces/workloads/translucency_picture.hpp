@@ -8,7 +8,7 @@
 #pragma once
 
 #include "pipeline/frame.hpp"
-#include "traces/workloads/view_rays.hpp"
+#include "traces/view_rays.hpp"
 
 #include <cstdint>
 #include <span>

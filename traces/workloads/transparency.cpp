@@ -9,6 +9,7 @@
 #include "pipeline/output/kbuffer_design.hpp" // names of the depth formats
 #include "sim/check.hpp"
 #include "sim/suggest.hpp"
+#include "traces/loads.hpp"
 #include "traces/pass_graph.hpp"
 #include "traces/workloads/methods.hpp"
 
@@ -81,8 +82,10 @@ Split split(const pipeline::Frame& frame, TransparentDraws which) {
     return result;
 }
 
+constexpr std::array<std::string_view, 3> compositing_programs{"nearest-k", "order-and-blend", "mlab"};
+
 models::ProgramChoice program_of(const TransparencyParams& params) {
-    constexpr std::array<std::string_view, 3> known{"nearest-k", "order-and-blend", "mlab"};
+    const auto& known = compositing_programs;
     if (!params.program.ends_with(".kb") && std::find(known.begin(), known.end(), params.program) == known.end())
         throw sim::InputError(fmt::format("workload transparency: program: expected {} or a file *.kb, got '{}'{}",
                                           fmt::join(known, ", "), params.program,
@@ -130,7 +133,15 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const Tran
     return graph.lower();
 }
 
-} // namespace
+TruthMethod truth(const Scene&, const pipeline::Frame& frame, const TransparencyParams&) {
+    if (frame.program != nullptr && std::find(compositing_programs.begin(), compositing_programs.end(),
+                                              frame.program->id()) == compositing_programs.end())
+        throw sim::InputError(fmt::format("truth: workload transparency: program: expected one of {}, got {}",
+                                          fmt::join(compositing_programs, ", "), frame.program->id()));
+    if (frame.program != nullptr && !frame.needs.colours)
+        throw sim::InputError("truth: workload transparency: entry: expected rgbz, the one that has colours");
+    return layered_truth();
+}
 
 // A program of the user's says how many entries it has where nobody else does.
 void own_k(WorkloadOptions& options, const std::string& k) {
@@ -140,12 +151,26 @@ void own_k(WorkloadOptions& options, const std::string& k) {
     if (name.ends_with(".kb")) options.values[k] = models::load_user_program(name, 0).program->k();
 }
 
+} // namespace
+
 Workload transparency_workload() {
-    return taking(make_workload<TransparencyParams>(
-                      "transparency",
-                      "the k nearest fragments of each pixel, composited front to back with one opacity", build),
-                  own_k, "k")
-        .with({{"k", {"1", "2", "4", "8", "16", "32"}}});
+    Workload workload =
+        taking(make_workload<TransparencyParams>(
+                   "transparency", "the k nearest fragments of each pixel, composited front to back with one opacity",
+                   build, truth),
+               own_k, "k");
+    workload.quality = {{"k", {"1", "2", "4", "8", "16", "32"}}};
+    workload.options = {{"k", "K", "Entries per pixel of the k-buffer (default 4)"},
+                        {"entry", "KIND", "What an entry holds: rgbz, z or zo (default rgbz)"},
+                        {"program", "NAME",
+                         "What a fragment does to its pixel: nearest-k, order-and-blend, mlab, or a file *.kb (default "
+                         "nearest-k)"}};
+    workload.examples = {{"accuracy", "scene.glb --sweep k=1,2,4,8,16"}};
+    return workload;
+}
+
+Load layers_load(std::uint32_t k, const std::string& entry) {
+    return {"transparency", {fmt::format("k={}", k), "entry=" + entry}};
 }
 
 } // namespace traces

@@ -4,6 +4,7 @@
 // Source: Bavoil 2007, section 6.3.2 (specification 004, A16). Gaps are measured along the view axis. What lies between
 // two faces counts as inside the mesh, so the hollows of a mesh that is not convex are filled.
 #include "models/programs/volume.hpp"
+#include "traces/loads.hpp"
 #include "traces/workloads/methods.hpp"
 #include "traces/workloads/scalar_field.hpp"
 
@@ -124,5 +125,7 @@ Workload volume_workload() {
     return make_workload<VolumeParams>(
         "volume", "a scalar field on tetrahedra as a cloud, composited between their faces", build);
 }
+
+Load ray_integral_load() { return {"volume"}; }
 
 } // namespace traces

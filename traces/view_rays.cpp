@@ -1,4 +1,4 @@
-#include "traces/workloads/view_rays.hpp"
+#include "traces/view_rays.hpp"
 
 namespace traces {
 

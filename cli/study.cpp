@@ -8,6 +8,7 @@
 #include "sim/counted.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace cli {
 

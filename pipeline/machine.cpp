@@ -6,9 +6,11 @@
 #include "pipeline/functional/shader.hpp"
 #include "pipeline/machine_units.hpp"
 #include "pipeline/on_chip_area.hpp"
+#include "sim/described_json.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 namespace pipeline {

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <bit>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace pipeline {
 
@@ -290,7 +291,7 @@ void Machine::collect_counters(RunResult& result) const {
     const Units& units = *units_;
     const MachineStats stats = units.stats();
     result.fragments = stats.rop.fragments;
-    Json& stages = result.stages;
+    Json& stages = *result.stages;
     stages = units.front.report();
     stages["rasterizer"] = one_unit_report(*units.rasterizer);
     if (units.early_depth) stages["early_depth_test"] = one_unit_report(*units.early_depth);

@@ -98,7 +98,7 @@ VertexPathResult run_vertex_path(const GpuParams& gpu, const Frame& frame, const
         result.draws.push_back(draw);
     }
     result.stages = rig.front.report();
-    result.stages.update(rig.memory.report());
+    result.stages->update(rig.memory.report());
     result.host_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return result;
 }

@@ -4,6 +4,7 @@
 #include "reports/result.hpp"
 #include "reports/study_runs.hpp"
 #include "sim/check.hpp"
+#include "sim/described_json.hpp"
 #include "sim/read_file.hpp"
 #include "traces/hash.hpp"
 #include "traces/scene.hpp"
@@ -12,6 +13,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <sys/file.h>
 #include <unistd.h>
 

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace reports {
 
@@ -143,7 +144,7 @@ std::string base_text(const Comparison& comparison, bool labels) {
 
 std::string caches_text(const RunResult& run) {
     std::string text;
-    for (const auto& cache : run.area.at("tile_caches").items())
+    for (const auto& cache : run.area->at("tile_caches").items())
         if (const auto bytes = cache.value().get<std::uint64_t>(); bytes != 0)
             text += fmt::format("{}{} {}", text.empty() ? "" : ", ", cache.key(), with_commas(bytes));
     return text;

@@ -3,10 +3,10 @@
 
 #include "pipeline/frame.hpp"
 #include "sim/described.hpp"
+#include "sim/json_value.hpp"
 #include "traces/scene.hpp"
 
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,7 +15,7 @@ namespace traces {
 
 /// Parameters of a workload by name; what is not named keeps its default. `values["k"] = 8`, or set("k=8").
 struct WorkloadOptions {
-    nlohmann::ordered_json values = nlohmann::ordered_json::object();
+    sim::JsonValue values;
 
     /// "key=value" as on the command line. Throws sim::InputError when there is no key.
     void set(std::string_view assignment);

@@ -13,7 +13,6 @@
 
 #include <functional>
 #include <memory>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -137,7 +136,7 @@ class KBufferDesign {
     /// A fresh plan for one machine.
     virtual KBufferPlan plan(const ModifyProgram& program, const View& view) const = 0;
     /// Effective parameters.
-    virtual nlohmann::ordered_json parameters() const = 0;
+    virtual sim::DescribedRef parameters() const = 0;
     /// What it adds to a GPU of this shape.
     virtual AddedHardware area(const ModifyProgram& program, const View& view, const GpuShape& shape) const = 0;
 };

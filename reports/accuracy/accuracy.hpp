@@ -12,7 +12,7 @@
 #include "traces/workloads.hpp"
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 

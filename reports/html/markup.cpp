@@ -1,6 +1,7 @@
 #include "reports/html/markup.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace reports {
 

@@ -3,6 +3,7 @@
 #include "reports/stability/replay.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace reports::stability::hardware {
 
@@ -23,11 +24,11 @@ void conserved(Finding& finding, const pipeline::RunResult& run, const std::stri
                            number_at(pass.counters, "/fragment/peel_rejects") +
                            number_at(pass.counters, "/early_depth/fragments_rejected") +
                            number_at(pass.counters, "/early_depth/fragments_beyond");
-        if (pass.counters.contains("raster"))
+        if (pass.counters->contains("raster"))
             finding.require(in == out, fmt::format("{}: {} fragments in, {} out in {}", design, in, out, pass.name));
     }
     double clients = 0.0;
-    for (const auto& link : run.bytes.items())
+    for (const auto& link : run.bytes->items())
         if (link.key().starts_with("dram_")) clients += number_at(link.value(), "/bytes");
     const double moved = number_at(run.bytes, "/dram/bytes");
     finding.require(moved > 0 && clients == moved, fmt::format("{}: {} bytes moved for {}", design, moved, clients));

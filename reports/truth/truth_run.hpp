@@ -7,7 +7,7 @@
 #include "reports/truth/truth.hpp"
 
 #include <memory>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 

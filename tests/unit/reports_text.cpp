@@ -9,6 +9,7 @@
 #include "tests/support/sample_comparison.hpp"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 namespace {

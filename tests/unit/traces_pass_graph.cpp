@@ -249,7 +249,7 @@ TEST(Workloads, EveryAttributeThatNobodyReadsIsListed) {
 }
 
 TEST(Workloads, OptionsAreCheckedByName) {
-    EXPECT_EQ(error_of({"k=65"}), "workload transparency: k: expected integer 1 to 64, got 65");
+    EXPECT_EQ(error_of({"k=65"}), "workload transparency: k: expected whole number 1 to 64, got 65");
     EXPECT_EQ(error_of({"K=4"}), "workload transparency: unknown key 'K'");
     EXPECT_EQ(error_of({"opacty=0.5"}), "workload transparency: unknown key 'opacty'; did you mean 'opacity'?");
     EXPECT_EQ(error_of({"entry=rgb"}),

@@ -47,16 +47,11 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const CsgP
 } // namespace
 
 Workload csg_workload() {
-    Workload workload = make_workload<CsgParams>(
-        "csg", "constructive solid geometry: the first point inside a Boolean expression of the draws", build);
     // An expression that is one number reads as such.
-    workload.build = [build = std::move(workload.build)](const Scene& scene, const pipeline::View& view,
-                                                         WorkloadOptions options) {
-        if (options.values.contains("expression") && options.values["expression"].is_number())
-            options.values["expression"] = options.values["expression"].dump();
-        return build(scene, view, options);
-    };
-    return workload;
+    return taking(
+        make_workload<CsgParams>(
+            "csg", "constructive solid geometry: the first point inside a Boolean expression of the draws", build),
+        as_text, "expression");
 }
 
 } // namespace traces

@@ -3,7 +3,6 @@
 // Source: Bavoil 2007, sections 4.4 and 6.1.1 (specification 004: workload W2, programs A6 and A11). Whether one pass
 // with a k-buffer does it or k passes of depth peeling (W3) is the design's choice, so the graph is the same for both.
 // Instead of A6 a program that composites may run: A7, multi-layer alpha blending, or one that the user wrote.
-#include "models/programs/language/user_program.hpp"
 #include "models/programs/library.hpp"
 #include "models/programs/nearest_k.hpp"
 #include "pipeline/output/kbuffer_design.hpp" // names of the depth formats
@@ -131,14 +130,6 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const Tran
 }
 
 } // namespace
-
-// A program of the user's says how many entries it has where nobody else does.
-void own_k(WorkloadOptions& options, const std::string& k) {
-    const auto program = options.values.find("program");
-    if (options.values.contains(k) || program == options.values.end() || !program->is_string()) return;
-    const auto name = program->get<std::string>();
-    if (name.ends_with(".kb")) options.values[k] = models::load_user_program(name, 0).program->k();
-}
 
 Workload transparency_workload() {
     return taking(make_workload<TransparencyParams>(

@@ -26,11 +26,7 @@ void add_size(CLI::App& command, std::string& size) {
 }
 
 void add_camera(CLI::App& command, std::string& camera) {
-    command
-        .add_option(
-            "--camera", camera,
-            "auto, the number of a camera of the scene, or ex,ey,ez,tx,ty,tz,fovy (eye, target, vertical degrees)")
-        ->type_name("CAMERA");
+    command.add_option("--camera", camera, camera_text)->type_name("CAMERA");
 }
 
 void add_threads(CLI::App& command, std::string& threads) {

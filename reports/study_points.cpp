@@ -24,7 +24,7 @@ using nlohmann::ordered_json;
 
 namespace {
 
-constexpr std::string_view format = "ropsim study point 1"; // the number is that of the file's form
+constexpr std::string_view format = "ropsim study point 2"; // the number is that of the file's form
 constexpr std::uint64_t largest_file = std::uint64_t{1} << 26U;
 
 std::string hash_of(std::string_view text) {
@@ -51,11 +51,8 @@ ordered_json value_json(const StudyValue& value) {
     ordered_json numbers = ordered_json::array();
     for (const StudyNumber& number : value.numbers)
         numbers.push_back({number.value, number_json(number.mean), number_json(number.low), number_json(number.high)});
-    return {{"gpu", value.gpu},
-            {"series", value.series},
-            {"x", value.x},
-            {"limit", value.limit},
-            {"numbers", std::move(numbers)}};
+    return {{"gpu", value.gpu},     {"series", value.series}, {"x", value.x},
+            {"limit", value.limit}, {"drew", value.drew},     {"numbers", std::move(numbers)}};
 }
 
 StudyValue value_of(const ordered_json& json) {
@@ -64,6 +61,7 @@ StudyValue value_of(const ordered_json& json) {
     value.series = json.at("series").get<std::string>();
     value.x = json.at("x").get<std::string>();
     value.limit = json.at("limit").get<std::string>();
+    value.drew = json.at("drew").get<bool>();
     for (const ordered_json& number : json.at("numbers"))
         value.numbers.push_back({number.at(0).get<std::string>(), number_of(number.at(1)), number_of(number.at(2)),
                                  number_of(number.at(3))});

@@ -136,8 +136,8 @@ void add_latencies(std::vector<Case>& cases) {
 
 void add_units(std::vector<Case>& cases) {
     cases.push_back(machine("pipes-1", Side::below, "one fragment pipe", {"fragment.pipes=1"}));
-    cases.push_back(machine("pipes-60", Side::at, "60 fragment pipes, the most there are", {"fragment.pipes=60"}));
-    cases.push_back(refused("pipes-64", Side::above, "64 fragment pipes", {"fragment.pipes=64"}, "1 to 60"));
+    cases.push_back(machine("pipes-64", Side::at, "64 fragment pipes, the most there are", {"fragment.pipes=64"}));
+    cases.push_back(refused("pipes-65", Side::above, "65 fragment pipes", {"fragment.pipes=65"}, "1 to 64"));
     cases.push_back(
         refused("partitions-0", Side::below, "no memory partition", {"memory.partitions=0"}, "memory.partitions"));
     cases.push_back(machine("partitions-1", Side::at, "one memory partition", {"memory.partitions=1"}));
@@ -166,7 +166,7 @@ void add_memory(std::vector<Case>& cases) {
                             "k-buffer caches of 16 MiB, texture caches of 1 MiB: larger than the frame",
                             {"rop.kbuffer_cache_bytes=16777216", "texture.l1_bytes=1048576"}));
     cases.push_back(refused("cache-63", Side::below, "a tile cache smaller than one line",
-                            {"rop.kbuffer_cache_bytes=63"}, "rop.kbuffer_cache_bytes"));
+                            {"rop.kbuffer_cache_bytes=63"}, "rop.kbuffer_cache_bytes: expected integer 64 to"));
     cases.push_back(
         machine("clock-1", Side::below, "a memory clock of 1 MHz beside a core of 650", {"memory.clock_mhz=1"}));
     cases.push_back(machine("clock-uneven", Side::at, "clocks that do not divide each other: 333.333 and 650 MHz",

@@ -156,4 +156,18 @@ TEST(EqualArea, WhatDoesNotFitIsNamedWithWhatItNeeds) {
     EXPECT_EQ(comparison.runs.size(), 3U);
 }
 
+TEST(EqualArea, AVariantIsNamedAfterTheCachesThatItGot) {
+    reports::ComparisonRequest request;
+    request.scene = "gen:discs?n=20";
+    request.width = request.height = 64;
+    request.designs = {"blender?rop.kbuffer_cache_bytes=8192&rop.queue=32"};
+    request.equal_area = 400'000;
+    const auto comparison = reports::compare(reports::prepare(request));
+    const auto& variant = comparison.variants.front();
+    const std::string bytes = variant.gpu_changes.at("rop.kbuffer_cache_bytes").dump();
+    ASSERT_NE(bytes, "8192");
+    EXPECT_EQ(variant.label, "blender rop.kbuffer_cache_bytes=" + bytes + " rop.queue=32");
+    EXPECT_EQ(variant.text, "blender?rop.kbuffer_cache_bytes=" + bytes + "&rop.queue=32");
+}
+
 } // namespace

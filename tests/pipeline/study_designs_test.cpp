@@ -187,4 +187,16 @@ TEST(StudyOfDesigns, EveryStudyOnHandHasAnAnswerOnRecord) {
     EXPECT_GE(seen, 16U);
 }
 
+TEST(StudyOfDesigns, PointsThatDrawNothingAreNamed) {
+    const std::string text = "title = \"t\"\nquestion = \"q\"\nx = \"gap\"\nsize = \"8x8\"\nworkload = \"opaque\"\n"
+                             "measure = \"cycles\"\npoints = [ { x = 0 }, { x = 99 } ]\n"
+                             "[[series]]\nname = \"one\"\nscene = \"gen:discs?n=1&width=8&height=8\"\n"
+                             "design = \"blender\"\n";
+    reports::StudyResult result = run(study_of(text));
+    EXPECT_EQ(reports::nothing_drawn(result), "");
+    result.values[1].drew = false;
+    EXPECT_EQ(reports::nothing_drawn(result),
+              "no fragment reached the pixels at gap = 99: numbers of these points say nothing");
+}
+
 } // namespace study_designs_test

@@ -22,4 +22,6 @@ JsonValue::~JsonValue() = default;
 
 JsonValue::Json& JsonValue::operator[](std::string_view key) { return (*value_)[std::string(key)]; }
 
+bool JsonValue::operator==(const JsonValue& other) const { return *value_ == *other.value_; }
+
 } // namespace sim

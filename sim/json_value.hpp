@@ -25,6 +25,7 @@ class JsonValue {
     Json* operator->() { return value_.get(); }
     const Json* operator->() const { return value_.get(); }
     operator const Json&() const { return *value_; }
+    bool operator==(const JsonValue& other) const;
 
     /// Made null where it is missing.
     Json& operator[](std::string_view key);

@@ -55,10 +55,10 @@ struct HostCost {
 
 /// What a run was of.
 struct VariantFacts {
-    std::string design;         ///< id
-    std::string text;           ///< "existing?visibility=rop_cache"
-    std::string label;          ///< the same, shorter
-    sim::JsonValue gpu_changes; ///< parameters that differ from `gpu`
+    std::string design;           ///< id
+    std::string text;             ///< "existing?visibility=rop_cache"
+    std::string label;            ///< the same, shorter
+    sim::JsonValue gpu_changes{}; ///< parameters that differ from `gpu`
 };
 
 /// A comparison of designs with the same on-chip bytes.

@@ -164,7 +164,7 @@ TEST(EqualArea, AVariantIsNamedAfterTheCachesThatItGot) {
     request.equal_area = 400'000;
     const auto comparison = reports::compare(reports::prepare(request));
     const auto& variant = comparison.variants.front();
-    const std::string bytes = variant.gpu_changes.at("rop.kbuffer_cache_bytes").dump();
+    const std::string bytes = variant.gpu_changes->at("rop.kbuffer_cache_bytes").dump();
     ASSERT_NE(bytes, "8192");
     EXPECT_EQ(variant.label, "blender rop.kbuffer_cache_bytes=" + bytes + " rop.queue=32");
     EXPECT_EQ(variant.text, "blender?rop.kbuffer_cache_bytes=" + bytes + "&rop.queue=32");

@@ -231,7 +231,7 @@ TEST(LeaveOut, BuildingEverythingChangesNeitherPictureNorCounts) {
             EXPECT_EQ(full.fragments, lean.fragments);
             for (const auto& stage : lean.stages->items()) {
                 ASSERT_TRUE(full.stages->contains(stage.key()));
-                EXPECT_EQ(without_time(full.stages[stage.key()].at("counters")),
+                EXPECT_EQ(without_time(full.stages->at(stage.key()).at("counters")),
                           without_time(stage.value().at("counters")))
                     << stage.key();
             }

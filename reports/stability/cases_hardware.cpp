@@ -166,7 +166,7 @@ void add_memory(std::vector<Case>& cases) {
                             "k-buffer caches of 16 MiB, texture caches of 1 MiB: larger than the frame",
                             {"rop.kbuffer_cache_bytes=16777216", "texture.l1_bytes=1048576"}));
     cases.push_back(refused("cache-63", Side::below, "a tile cache smaller than one line",
-                            {"rop.kbuffer_cache_bytes=63"}, "rop.kbuffer_cache_bytes: expected integer 64 to"));
+                            {"rop.kbuffer_cache_bytes=63"}, "rop.kbuffer_cache_bytes: expected whole number 64 to"));
     cases.push_back(
         machine("clock-1", Side::below, "a memory clock of 1 MHz beside a core of 650", {"memory.clock_mhz=1"}));
     cases.push_back(machine("clock-uneven", Side::at, "clocks that do not divide each other: 333.333 and 650 MHz",

@@ -75,7 +75,7 @@ TEST(OnChipArea, WhatADesignAddsGrowsWithItsOptions) {
 TEST(OnChipArea, ARunSaysWhatTheFunctionSays) {
     for (const std::string& design : discs().designs()) {
         const auto run = discs().run(design);
-        EXPECT_EQ(run.area, pipeline::area_json(area_of(design))) << design;
+        EXPECT_EQ(*run.area, pipeline::area_json(area_of(design))) << design;
         EXPECT_EQ(run.area->at("total_bytes"), run.area->at("tile_cache_bytes").get<std::uint64_t>() +
                                                    run.area->at("payload_bytes").get<std::uint64_t>() +
                                                    run.area->at("added_bytes").get<std::uint64_t>());

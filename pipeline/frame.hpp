@@ -7,6 +7,7 @@
 #include "pipeline/draw.hpp"
 #include "pipeline/output/kbuffer.hpp"
 #include "pipeline/resolve.hpp"
+#include "pipeline/surface_format.hpp"
 
 #include <memory>
 #include <optional>
@@ -14,9 +15,6 @@
 #include <vector>
 
 namespace pipeline {
-
-enum class DepthFormat : std::uint8_t { d16, d24, d32f };
-enum class ColourFormat : std::uint8_t { rgba8, rgba16f, rgba32f };
 
 /// How the vertices of a frame come to the GPU.
 enum class Submission : std::uint8_t {
@@ -117,8 +115,8 @@ struct Frame {
     std::vector<LeftOut> left_out;                ///< by the pass graph: culled passes, unread attributes
     std::shared_ptr<const ModifyProgram> program; ///< null when no pass has a k-buffer
     std::shared_ptr<const Resolve> resolve;       ///< null: the layers are composited front to back
-    DepthFormat depth_format = DepthFormat::d24;
-    ColourFormat colour_format = ColourFormat::rgba8;
+    SurfaceFormat depth_format = SurfaceFormat::d24;
+    SurfaceFormat colour_format = SurfaceFormat::rgba8;
     glm::vec4 background{1.0F};
     float opacity = 0.5F; ///< uniform alpha of composited layers (A11)
 

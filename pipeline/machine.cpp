@@ -1,7 +1,7 @@
 #include "pipeline/machine.hpp"
 
-#include "pipeline/functional/colour_format.hpp"
 #include "pipeline/functional/composite.hpp"
+#include "pipeline/functional/fragment_operations.hpp"
 #include "pipeline/functional/screen_stream.hpp"
 #include "pipeline/functional/shader.hpp"
 #include "pipeline/machine_units.hpp"
@@ -209,11 +209,11 @@ void Machine::clear(const Pass& pass) {
     for (const std::string& surface : pass.writes) {
         if (surface == "depth") {
             surfaces.depth.assign(places, farthest_depth(frame_->depth_format));
-            bytes += clear_surface(surfaces.depth_clear, fixed, pixels, depth_bytes(frame_->depth_format));
+            bytes += clear_surface(surfaces.depth_clear, fixed, pixels, bytes_of(frame_->depth_format));
         }
         if (surface == "colour") {
             surfaces.colour.assign(places, through_format(frame_->colour_format, frame_->background));
-            bytes += clear_surface(surfaces.colour_clear, fixed, pixels, colour_bytes(frame_->colour_format));
+            bytes += clear_surface(surfaces.colour_clear, fixed, pixels, bytes_of(frame_->colour_format));
         }
         // Peeling clears its layers one by one instead. Tile memory is cleared on chip, and stores whole sectors.
         if (surface != "kbuffer") continue;
@@ -260,10 +260,10 @@ void Machine::draw(const Pass& pass, const FragmentStream& stream) {
     context.depth = pass.depth;
     context.blend = pass.blend;
     context.colour_write = pass.colour;
-    context.colour_bytes = colour_bytes(frame_->colour_format) * pass.colour_targets;
+    context.colour_bytes = bytes_of(frame_->colour_format) * pass.colour_targets;
     context.depth_format = frame_->depth_format;
     context.read_only_format = frame_->depth_format;
-    context.depth_bytes = depth_bytes(frame_->depth_format);
+    context.depth_bytes = bytes_of(frame_->depth_format);
     context.behind = nullptr;
     if (!pass.kbuffer) {
         context.end = FragmentEnd::depth_colour;
@@ -297,8 +297,8 @@ void Machine::resolve() {
     if (!passes.empty() && heads_or_entries.left() + fixed.depth_clear.left() + fixed.colour_clear.left() != 0) {
         begin("resolve of cleared sectors");
         if (frame_->program != nullptr) resolve_cleared(heads_or_entries, kbuffer_bytes());
-        resolve_cleared(fixed.depth_clear, depth_bytes(frame_->depth_format));
-        resolve_cleared(fixed.colour_clear, colour_bytes(frame_->colour_format));
+        resolve_cleared(fixed.depth_clear, bytes_of(frame_->depth_format));
+        resolve_cleared(fixed.colour_clear, bytes_of(frame_->colour_format));
         end();
     }
     for (const ScreenPass& pass : passes) screen(pass, *frame_->screen_draw);

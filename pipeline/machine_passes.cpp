@@ -30,7 +30,7 @@ void Machine::draw_layers(const Pass& pass, const FragmentStream& stream) {
     context.blend = BlendMode::replace;
     context.depth_format = plan_.passes.depth_format;
     // From both ends: two depths, two colours, both blended with MAX.
-    context.depth_bytes = both_ends ? 8 : depth_bytes(context.depth_format);
+    context.depth_bytes = both_ends ? 8 : bytes_of(context.depth_format);
     context.colour_write = program.needs_colour();
     context.colour_bytes = both_ends ? 32 : 16; // RGBA32F, as the k-buffer's entries
     context.farthest = both_ends;

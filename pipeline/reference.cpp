@@ -1,10 +1,10 @@
 #include "pipeline/reference.hpp"
 
-#include "pipeline/functional/colour_format.hpp"
 #include "pipeline/functional/composite.hpp"
-#include "pipeline/functional/depth_format.hpp"
+#include "pipeline/functional/fragment_operations.hpp"
 #include "pipeline/functional/parallel.hpp"
 #include "pipeline/functional/pixel_lists.hpp"
+#include "pipeline/functional/surface_texel.hpp"
 #include "sim/check.hpp"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ struct Surfaces {
     std::vector<DepthCode> depth;
     std::vector<float> colour;
 
-    std::vector<float> depth_values(DepthFormat format) const {
+    std::vector<float> depth_values(SurfaceFormat format) const {
         std::vector<float> values(depth.size());
         for (std::size_t i = 0; i < values.size(); ++i) values[i] = depth_value(format, depth[i]);
         return values;

@@ -3,7 +3,7 @@
 
 #include "pipeline/fragment_stream.hpp"
 #include "pipeline/frame.hpp"
-#include "pipeline/functional/depth_format.hpp"
+#include "pipeline/functional/surface_texel.hpp"
 #include "pipeline/output/kbuffer_design.hpp"
 #include "pipeline/output/surface_layout.hpp"
 
@@ -44,11 +44,11 @@ struct PassContext {
     std::uint32_t first_kept = 0;        ///< lists: fragments of a pixel that earlier passes have dealt with
     PassesSite peel;
     const std::vector<DepthCode>* read_only_depth = nullptr; ///< early depth test against a finished depth surface
-    DepthFormat read_only_format = DepthFormat::d24;
-    DepthFormat depth_format = DepthFormat::d24; ///< of the surface that the pass tests and writes
-    std::vector<ShaderCost> shader_costs;        ///< by draw
-    const ScreenPass* screen = nullptr;          ///< a full-screen pass, whose shader counts for every quad
-    std::uint32_t atomic_latency = 0;            ///< cycles that each shader waits for an atomic before it is done
+    SurfaceFormat read_only_format = SurfaceFormat::d24;
+    SurfaceFormat depth_format = SurfaceFormat::d24; ///< of the surface that the pass tests and writes
+    std::vector<ShaderCost> shader_costs;            ///< by draw
+    const ScreenPass* screen = nullptr;              ///< a full-screen pass, whose shader counts for every quad
+    std::uint32_t atomic_latency = 0;                ///< cycles that each shader waits for an atomic before it is done
     bool textures = false;
     /// A task is a group of sample quads: shaded once, taken apart in the ROP. Else each sample quad is a task.
     bool multisampled = false;

@@ -1,7 +1,7 @@
 // What a ROP group does to the pixels of a quad; each operation returns the cycles it takes.
 #include "pipeline/output/rop.hpp"
 
-#include "pipeline/functional/colour_format.hpp"
+#include "pipeline/functional/fragment_operations.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,7 @@
 #include "pipeline/raster/early_depth_test.hpp"
 
+#include "pipeline/functional/fragment_operations.hpp"
+
 #include <algorithm>
 #include <bit>
 #include <limits>

@@ -19,7 +19,7 @@ struct DepthPass : tests::QuadPass {
 struct ColourPass : tests::QuadPass {
     pipeline::Frame frame;
     explicit ColourPass(pipeline::BlendMode blend = pipeline::BlendMode::replace) {
-        frame.colour_format = pipeline::ColourFormat::rgba32f;
+        frame.colour_format = pipeline::SurfaceFormat::rgba32f;
         context.frame = &frame;
         context.colour_write = true;
         context.blend = blend;

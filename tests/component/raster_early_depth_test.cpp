@@ -1,5 +1,5 @@
 // The early depth test between a source and a sink of quads.
-#include "pipeline/functional/depth_format.hpp"
+#include "pipeline/functional/surface_texel.hpp"
 #include "pipeline/raster/early_depth_test.hpp"
 #include "tests/support/quad_kit.hpp"
 #include "tests/support/sim_kit.hpp"

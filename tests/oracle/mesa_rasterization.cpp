@@ -2,7 +2,7 @@
 //
 // Both get the same vertices and the same matrix. Triangles that lie within the screen must agree in every pixel.
 #include "pipeline/functional/clip.hpp"
-#include "pipeline/functional/colour_format.hpp"
+#include "pipeline/functional/fragment_operations.hpp"
 #include "pipeline/functional/front_end.hpp"
 #include "pipeline/functional/vertex_transform.hpp"
 #include "sim/random.hpp"

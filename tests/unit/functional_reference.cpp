@@ -48,8 +48,8 @@ struct FrameKit {
     Frame frame;
 
     FrameKit(std::uint32_t width, std::uint32_t height) : scene(width, height) {
-        frame.depth_format = DepthFormat::d32f;
-        frame.colour_format = ColourFormat::rgba32f;
+        frame.depth_format = SurfaceFormat::d32f;
+        frame.colour_format = SurfaceFormat::rgba32f;
     }
 
     std::uint32_t add_layer(float depth, const glm::vec4& colour) {
@@ -108,7 +108,7 @@ TEST(Reference, TheNearestFragmentWinsAndTheFirstOfEqualOnesStays) {
 }
 
 TEST(Reference, DepthsThatAreEqualInTheFormatAreEqual) {
-    for (const DepthFormat format : {DepthFormat::d16, DepthFormat::d24}) {
+    for (const SurfaceFormat format : {SurfaceFormat::d16, SurfaceFormat::d24}) {
         FrameKit kit(4, 4);
         kit.add_layer(0.4F, {1, 0, 0, 1});
         kit.add_layer(0.4F - 0x1p-20F, {0, 1, 0, 1});
@@ -116,7 +116,7 @@ TEST(Reference, DepthsThatAreEqualInTheFormatAreEqual) {
         pass.depth = {true, true};
         pass.colour = true;
         kit.frame.depth_format = format;
-        EXPECT_EQ(kit.run().colour[0], format == DepthFormat::d16 ? 1.0F : 0.0F);
+        EXPECT_EQ(kit.run().colour[0], format == SurfaceFormat::d16 ? 1.0F : 0.0F);
     }
 }
 

@@ -182,7 +182,7 @@ TEST(Workloads, SceneWithoutTransparentMaterialsHasNoKBuffer) {
 TEST(Workloads, OpaqueIsOnePassWithDepth) {
     const Frame frame = frame_with({"depth_format=d16"}, "opaque");
     EXPECT_EQ(pass_names(frame), (Names{"clear", "opaque"}));
-    EXPECT_EQ(frame.depth_format, pipeline::DepthFormat::d16);
+    EXPECT_EQ(frame.depth_format, pipeline::SurfaceFormat::d16);
     EXPECT_EQ(frame.program, nullptr);
     EXPECT_TRUE(frame.needs.depth && frame.needs.colour_surface && frame.needs.normals);
 }
@@ -201,7 +201,7 @@ TEST(Workloads, GeometryIsOnePassOfDepthsThatReadsAllAttributesOrPositions) {
 
     const Frame positions = frame_with({"reads=position", "depth_format=d32f"}, "geometry");
     EXPECT_EQ(positions.needs.attributes, 0U);
-    EXPECT_EQ(positions.depth_format, pipeline::DepthFormat::d32f);
+    EXPECT_EQ(positions.depth_format, pipeline::SurfaceFormat::d32f);
     EXPECT_EQ(left_out(positions)[1], "normals: fragments have the base colour of their material");
 }
 

@@ -2,7 +2,7 @@
 // sorted. The ROP's read-modify-write of the colour surface is safe, because it is fixed and in primitive order.
 //
 // Source: Bavoil 2007, sections 2.1.2 and 4.3.1 (specification 004, section 1, rules 1 and 2).
-#include "pipeline/output/kbuffer_design.hpp" // names of the depth formats
+#include "pipeline/format_choice.hpp"
 #include "traces/pass_graph.hpp"
 #include "traces/workloads/methods.hpp"
 
@@ -13,10 +13,6 @@ template <>
 struct sim::EnumNames<pipeline::BlendMode> {
     static constexpr std::array<std::string_view, 5> names{"replace", "over", "add", "least", "greatest"};
 };
-template <>
-struct sim::EnumNames<pipeline::ColourFormat> {
-    static constexpr std::array<std::string_view, 3> names{"rgba8", "rgba16f", "rgba32f"};
-};
 
 namespace traces {
 
@@ -26,7 +22,7 @@ struct BlendedParams {
     pipeline::BlendMode mode = pipeline::BlendMode::over;
     float opacity = 0.5F;
     std::array<float, 3> background = {1.0F, 1.0F, 1.0F};
-    pipeline::ColourFormat colour_format = pipeline::ColourFormat::rgba8;
+    pipeline::ColourChoice colour_format = pipeline::ColourChoice::rgba8;
 
     static constexpr auto fields() {
         using P = BlendedParams;
@@ -42,7 +38,7 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const Blen
     pipeline::Frame frame = frame_of(scene, view);
     frame.opacity = params.opacity;
     frame.background = {params.background[0], params.background[1], params.background[2], 1.0F};
-    frame.colour_format = params.colour_format;
+    frame.colour_format = format_of(params.colour_format);
     std::vector<std::uint32_t> all(frame.draws.size());
     std::iota(all.begin(), all.end(), 0U);
 

@@ -1,23 +1,16 @@
-#include "pipeline/functional/colour_format.hpp"
+#include "pipeline/functional/fragment_operations.hpp"
 
-#include "pipeline/functional/number_formats.hpp"
+#include "pipeline/functional/surface_texel.hpp"
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <cstring>
-#include <limits>
+#include <bit>
 
 namespace pipeline {
 
 namespace {
 
 using Codes = glm::tvec4<std::uint8_t>;
-
-float saturated(float value, float largest) {
-    if (std::isnan(value)) return 0.0F;
-    return std::clamp(value, -largest, largest);
-}
 
 std::uint8_t product(std::uint32_t a, std::uint32_t b) {
     const std::uint32_t t = a * b + 128U;
@@ -45,43 +38,6 @@ glm::vec4 over(const glm::vec4& source, const glm::vec4& target) {
 }
 
 } // namespace
-
-void pack_colour(ColourFormat format, const glm::vec4& colour, std::byte* target) {
-    if (format == ColourFormat::rgba8) {
-        for (int i = 0; i < 4; ++i) target[i] = static_cast<std::byte>(float_to_unorm8(colour[i]));
-    } else if (format == ColourFormat::rgba16f) {
-        std::array<std::uint16_t, 4> halves{};
-        for (int i = 0; i < 4; ++i) halves[static_cast<std::size_t>(i)] = float_to_half(saturated(colour[i], 65504.0F));
-        std::memcpy(target, halves.data(), sizeof(halves));
-    } else {
-        std::array<float, 4> floats{};
-        for (int i = 0; i < 4; ++i)
-            floats[static_cast<std::size_t>(i)] = saturated(colour[i], std::numeric_limits<float>::max());
-        std::memcpy(target, floats.data(), sizeof(floats));
-    }
-}
-
-glm::vec4 unpack_colour(ColourFormat format, const std::byte* source) {
-    glm::vec4 colour;
-    if (format == ColourFormat::rgba8) {
-        for (int i = 0; i < 4; ++i) colour[i] = unorm8_to_float(static_cast<std::uint8_t>(source[i]));
-    } else if (format == ColourFormat::rgba16f) {
-        std::array<std::uint16_t, 4> halves{};
-        std::memcpy(halves.data(), source, sizeof(halves));
-        for (int i = 0; i < 4; ++i) colour[i] = half_to_float(halves[static_cast<std::size_t>(i)]);
-    } else {
-        std::array<float, 4> floats{};
-        std::memcpy(floats.data(), source, sizeof(floats));
-        for (int i = 0; i < 4; ++i) colour[i] = floats[static_cast<std::size_t>(i)];
-    }
-    return colour;
-}
-
-glm::vec4 through_format(ColourFormat format, const glm::vec4& colour) {
-    std::array<std::byte, 16> bytes{};
-    pack_colour(format, colour, bytes.data());
-    return unpack_colour(format, bytes.data());
-}
 
 glm::vec4 blend(BlendMode mode, const glm::vec4& source, const glm::vec4& target) {
     glm::vec4 result = source;
@@ -123,16 +79,16 @@ Codes blend(BlendMode mode, const Codes& source, const Codes& target) {
     return result;
 }
 
-glm::vec4 write_through(ColourFormat format, BlendMode mode, const glm::vec4& source, const glm::vec4& stored) {
+glm::vec4 write_through(SurfaceFormat format, BlendMode mode, const glm::vec4& source, const glm::vec4& stored) {
     if (mode == BlendMode::replace) return through_format(format, source);
-    if (format != ColourFormat::rgba8) return through_format(format, blend(mode, source, stored));
+    if (format != SurfaceFormat::rgba8) return through_format(format, blend(mode, source, stored));
     std::array<std::byte, 4> bytes{};
     const auto code = [&bytes](const glm::vec4& colour) {
-        pack_colour(ColourFormat::rgba8, colour, bytes.data());
+        pack_colour(SurfaceFormat::rgba8, colour, bytes.data());
         return std::bit_cast<glm::tvec4<std::uint8_t>>(bytes);
     };
     bytes = std::bit_cast<std::array<std::byte, 4>>(blend(mode, code(source), code(stored)));
-    return unpack_colour(ColourFormat::rgba8, bytes.data());
+    return unpack_texel(SurfaceFormat::rgba8, bytes.data());
 }
 
 } // namespace pipeline

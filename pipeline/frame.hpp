@@ -6,6 +6,7 @@
 
 #include "pipeline/draw.hpp"
 #include "pipeline/output/kbuffer.hpp"
+#include "pipeline/raster_state.hpp"
 #include "pipeline/resolve.hpp"
 #include "pipeline/surface_format.hpp"
 
@@ -30,20 +31,11 @@ enum class PassKind : std::uint8_t {
     resolve, ///< reads the finished surfaces and writes the picture; timed where Frame::resolve says how
 };
 
-/// `over`: rgb = source * a + target * (1 - a), alpha = a + target * (1 - a), with a = source alpha, colours not
-/// premultiplied. `add` sums and saturates (RGBA8). `least` and `greatest` act per channel.
-enum class BlendMode : std::uint8_t { replace, over, add, least, greatest };
-
 /// What the shader makes of a fragment, where a pass asks for its colour.
 enum class FragmentColour : std::uint8_t {
     lit,   ///< base colour x vertex colour x texture x light
     flat,  ///< the base colour of its material: nothing is interpolated, lit or discarded
     cosine ///< red, green and blue are |cos| of the angle between the surface normal and the direction to the eye
-};
-
-struct DepthState {
-    bool test = false; ///< LESS against the depth surface; a strict test keeps the first of equal depths
-    bool write = false;
 };
 
 /// Triangles of one instance of a draw that are handed over with a draw call of their own: a run of the list that
@@ -64,11 +56,11 @@ struct Pass {
     std::vector<std::uint32_t> draws; ///< indices into Frame::draws; draw passes only
     std::vector<DrawPart> parts;      ///< of those draws, in this order; empty: each draw whole
     DepthState depth;
-    bool colour = false;                  ///< writes the shaded colour to the "colour" surface
-    std::uint32_t colour_targets = 1;     ///< written at once, all of the colour format; the first holds the colour
-    BlendMode blend = BlendMode::replace; ///< how; but for replace, Frame::opacity scales the alpha
-    bool both_faces = false;              ///< draws triangles that face away, too
-    bool kbuffer = false;                 ///< fragments go through the frame's modify program
+    bool colour = false;              ///< writes the shaded colour to the "colour" surface
+    std::uint32_t colour_targets = 1; ///< written at once, all of the colour format; the first holds the colour
+    BlendState blend;                 ///< where it is enabled, Frame::opacity scales the alpha
+    bool both_faces = false;          ///< draws triangles that face away, too
+    bool kbuffer = false;             ///< fragments go through the frame's modify program
     /// Attributes that the vertex shader reads beside what shading needs: bits as in mask_of(Semantic).
     std::uint32_t attributes = 0;
 };

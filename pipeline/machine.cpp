@@ -313,7 +313,7 @@ void Machine::screen(const ScreenPass& pass, std::uint32_t triangle) {
     context.end = FragmentEnd::depth_colour;
     context.depth = {};
     context.read_only_depth = nullptr;
-    context.blend = BlendMode::replace;
+    context.blend = {};
     context.colour_write = true; // its values are the workload's
     context.colour_bytes = pass.written_bytes;
     context.multisampled = false;

@@ -27,7 +27,7 @@ void Machine::draw_layers(const Pass& pass, const FragmentStream& stream) {
     context.read_only_depth = pass.depth.test ? &units_->drawn.depth : nullptr;
     context.end = FragmentEnd::depth_colour;
     context.depth = {true, true};
-    context.blend = BlendMode::replace;
+    context.blend = {};
     context.depth_format = plan_.passes.depth_format;
     // From both ends: two depths, two colours, both blended with MAX.
     context.depth_bytes = both_ends ? 8 : bytes_of(context.depth_format);

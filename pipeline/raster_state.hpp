@@ -89,6 +89,8 @@ inline constexpr BlendPart least{BlendFactor::one, BlendFactor::one, BlendEquati
 inline constexpr BlendPart greatest{BlendFactor::one, BlendFactor::one, BlendEquation::greatest};
 
 inline BlendState of(const BlendPart& colour, const BlendPart& alpha) { return {true, colour, alpha, glm::vec4(0.0F)}; }
+inline BlendState of(const BlendPart& all) { return of(all, all); }
+inline BlendState over() { return of(over_colour, over_alpha); }
 
 } // namespace blends
 

@@ -76,7 +76,7 @@ class PassRunner {
         const float depth = stream_.depths[quad][lane_];
         if (!depth_test(depth)) return;
         if (counts_complexity_) ++image_.depth_complexity[pixel_];
-        if (pass_.colour) write_colour(quad);
+        if (pass_.colour) store_colour(quad);
         if (pass_.kbuffer) insert(quad);
     }
 
@@ -86,7 +86,7 @@ class PassRunner {
         if (!pass_.depth.test && !pass_.depth.write) return true;
         DepthCode& stored = surfaces_.depth[pixel_];
         const DepthCode incoming = depth_code(frame_.depth_format, depth);
-        if (pass_.depth.test && !depth_less(incoming, stored)) {
+        if (pass_.depth.test && !passes(pass_.depth.compare, incoming, stored)) {
             if (!pass_.kbuffer && counts_complexity_) ++image_.depth_complexity[pixel_];
             return false;
         }
@@ -94,12 +94,12 @@ class PassRunner {
         return true;
     }
 
-    void write_colour(QuadId quad) {
+    void store_colour(QuadId quad) {
         float* stored = surfaces_.colour.data() + pixel_ * 4;
         glm::vec4 source = stream_.colours[quad][lane_];
-        if (pass_.blend != BlendMode::replace) source.a *= frame_.opacity;
+        if (pass_.blend.enabled) source.a *= frame_.opacity;
         const glm::vec4 colour =
-            write_through(frame_.colour_format, pass_.blend, source, {stored[0], stored[1], stored[2], stored[3]});
+            write_colour(frame_.colour_format, pass_.blend, 15, source, {stored[0], stored[1], stored[2], stored[3]});
         for (int i = 0; i < 4; ++i) stored[i] = colour[i];
     }
 

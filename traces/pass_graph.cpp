@@ -215,7 +215,7 @@ void PassGraph::add_clear(std::string name, std::vector<std::string> writes) {
 }
 
 void PassGraph::add_draw(std::string name, std::vector<std::string> reads, std::vector<std::string> writes,
-                         std::vector<std::uint32_t> draws, bool both_faces, pipeline::BlendMode blend) {
+                         std::vector<std::uint32_t> draws, bool both_faces, const pipeline::BlendState& blend) {
     for (const std::uint32_t draw : draws) CHECK(draw < frame_.draws.size());
     CHECK(!contains(writes, kbuffer_surface) || frame_.program != nullptr);
     Pass pass;
@@ -264,7 +264,8 @@ Frame PassGraph::lower() const {
     frame.passes = culling.kept();
     for (Pass& pass : frame.passes) {
         if (pass.kind != PassKind::draw) continue;
-        pass.depth = {contains(pass.reads, depth_surface), contains(pass.writes, depth_surface)};
+        pass.depth.test = contains(pass.reads, depth_surface);
+        pass.depth.write = contains(pass.writes, depth_surface);
         pass.colour = contains(pass.writes, colour_surface);
         pass.kbuffer = contains(pass.writes, kbuffer_surface);
     }

@@ -28,8 +28,7 @@ class PassGraph {
     /// writing kbuffer runs the program (which reads the entries as well). `both_faces` turns face culling off; `blend`
     /// is how colours are written, and blending reads the colour surface.
     void add_draw(std::string name, std::vector<std::string> reads, std::vector<std::string> writes,
-                  std::vector<std::uint32_t> draws, bool both_faces = false,
-                  pipeline::BlendMode blend = pipeline::BlendMode::replace);
+                  std::vector<std::uint32_t> draws, bool both_faces = false, const pipeline::BlendState& blend = {});
     /// The vertex shader of the pass added last reads these attributes beside what shading needs: bits as in
     /// pipeline::mask_of().
     void vertex_shader_reads(std::uint32_t attributes);

@@ -34,7 +34,7 @@ struct PassContext {
     FragmentEnd end = FragmentEnd::depth_colour;
     DepthState depth;
     bool colour_write = false;
-    BlendMode blend = BlendMode::replace;
+    BlendState blend;
     std::uint32_t colour_bytes = 4; ///< per pixel of the colour target
     std::uint32_t depth_bytes = 4;
     const PeeledLayer* behind = nullptr; ///< reject what is not behind this layer

@@ -156,7 +156,7 @@ class Rop final : public sim::Component {
     bool send_commits();
     void sample(const KBufferRead& read, std::uint64_t targets);
     std::uint32_t run_depth_colour(const Queued& queued);
-    void write_colour(QuadId quad, std::uint32_t pixel, std::size_t at);
+    void store_colour(QuadId quad, std::uint32_t pixel, std::size_t at);
     std::uint32_t run_store(const Queued& queued);
     std::uint32_t run_blend(const Queued& queued);
     std::uint32_t run_append(const Queued& queued);

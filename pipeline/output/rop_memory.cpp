@@ -1,6 +1,7 @@
 // The memory side of a ROP group: fetches, write-back, clears and copies.
 #include "pipeline/output/rop.hpp"
 
+#include "pipeline/functional/fragment_operations.hpp"
 #include "sim/check.hpp"
 
 #include <algorithm>
@@ -83,7 +84,7 @@ bool Rop::fetches(Use use) const {
     case Use::depth:
         return pass_->depth.test || pass_->farthest;
     case Use::colour:
-        return pass_->blend != BlendMode::replace;
+        return reads_target(pass_->blend);
     case Use::kbuffer:
         break;
     }

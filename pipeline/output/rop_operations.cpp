@@ -23,7 +23,7 @@ std::uint32_t Rop::run_depth_colour(const Queued& queued) {
         const std::size_t at = pass_->place(quad, pixel);
         const DepthCode code = depth_code(pass_->depth_format, pass_->stream->depths[queued.task.quad][pixel]);
         if (pass_->farthest) capture_farthest(queued.task.quad, at, code);
-        if (pass_->depth.test && !depth_less(code, surfaces_.fixed->depth[at])) {
+        if (pass_->depth.test && !passes(pass_->depth.compare, code, surfaces_.fixed->depth[at])) {
             ++stats_.depth_failed;
             continue;
         }
@@ -31,14 +31,14 @@ std::uint32_t Rop::run_depth_colour(const Queued& queued) {
         kept |= 1U << pixel;
         if (pass_->depth.write) surfaces_.fixed->depth[at] = code;
         surfaces_.fixed->winner[at] = queued.task.quad;
-        if (pass_->colour_write && !surfaces_.fixed->colour.empty()) write_colour(queued.task.quad, pixel, at);
+        if (pass_->colour_write && !surfaces_.fixed->colour.empty()) store_colour(queued.task.quad, pixel, at);
     }
     const std::uint32_t changed = pass_->farthest ? queued.task.mask : kept;
     if (pass_->depth.write) depth_tiles_.mark_dirty(queued.entry[0], depth_tiles_.shape().in_line(block, changed));
     if (pass_->colour_write) colour_tiles_.mark_dirty(queued.entry[1], colour_tiles_.shape().in_line(block, kept));
     const auto passed = static_cast<std::uint32_t>(std::popcount(kept));
     const auto fragments = static_cast<std::uint32_t>(std::popcount(queued.task.mask));
-    const std::uint32_t blended = pass_->blend == BlendMode::replace ? 1 : 2; // reads the colour, too
+    const std::uint32_t blended = reads_target(pass_->blend) ? 2 : 1; // reads the colour, too
     return cycles_for((pass_->depth.test ? fragments * pass_->depth_bytes : 0) +
                       (pass_->depth.write ? passed * pass_->depth_bytes : 0) +
                       (pass_->colour_write ? passed * blended * pass_->colour_bytes : 0));
@@ -51,11 +51,11 @@ void Rop::capture_farthest(QuadId quad, std::size_t at, DepthCode code) {
     surfaces_.fixed->far_winner[at] = quad;
 }
 
-void Rop::write_colour(QuadId quad, std::uint32_t pixel, std::size_t at) {
+void Rop::store_colour(QuadId quad, std::uint32_t pixel, std::size_t at) {
     glm::vec4 source = pass_->stream->colours[quad][pixel];
-    if (pass_->blend != BlendMode::replace) source.a *= pass_->frame->opacity;
+    if (pass_->blend.enabled) source.a *= pass_->frame->opacity;
     glm::vec4& stored = surfaces_.fixed->colour[at];
-    stored = write_through(pass_->frame->colour_format, pass_->blend, source, stored);
+    stored = write_colour(pass_->frame->colour_format, pass_->blend, 15, source, stored);
 }
 
 // Books the store of one pixel; `oldest` becomes the version of the oldest render target it was computed from.

@@ -1,7 +1,5 @@
 #include "pipeline/raster/early_depth_test.hpp"
 
-#include "pipeline/functional/fragment_operations.hpp"
-
 #include <algorithm>
 #include <bit>
 #include <limits>
@@ -61,7 +59,8 @@ std::uint32_t EarlyDepthTest::before_surface(const QuadTask& task) const {
     if (pass_->read_only_depth == nullptr) return task.mask;
     return kept_samples(task, [this](QuadId id, std::uint32_t pixel) {
         const DepthCode code = depth_code(pass_->read_only_format, pass_->stream->depths[id][pixel]);
-        return depth_less(code, (*pass_->read_only_depth)[pass_->place(pass_->stream->quads[id], pixel)]);
+        return passes(pass_->depth.compare, code,
+                      (*pass_->read_only_depth)[pass_->place(pass_->stream->quads[id], pixel)]);
     });
 }
 

@@ -14,7 +14,7 @@
 
 namespace reports::stability::blending {
 
-using pipeline::BlendMode;
+namespace blends = pipeline::blends;
 using pipeline::SurfaceFormat;
 using Codes = glm::tvec4<std::uint8_t>;
 
@@ -76,8 +76,8 @@ void add_products(std::vector<Case>& cases) {
                          for (int alpha = 0; alpha < 256; ++alpha)
                              for (int target = 0; target < 256; ++target) {
                                  const int source = (alpha * 7 + target * 13) % 256;
-                                 const Codes result = pipeline::blend(
-                                     BlendMode::over,
+                                 const Codes result = pipeline::blended(
+                                     blends::over(),
                                      Codes(static_cast<std::uint8_t>(source), 0, 255, static_cast<std::uint8_t>(alpha)),
                                      Codes(static_cast<std::uint8_t>(target), 255, 0, 0));
                                  finding.error(result.r - exact_over(source, alpha, target));
@@ -89,7 +89,7 @@ void add_products(std::vector<Case>& cases) {
         for (const SurfaceFormat format : {SurfaceFormat::rgba8, SurfaceFormat::rgba16f, SurfaceFormat::rgba32f}) {
             const glm::vec4 stored = pipeline::through_format(format, {0.2F, 0.4F, 0.8F, 0.6F}),
                             source(0.9F, 0.1F, 0.3F, alpha);
-            const glm::vec4 result = pipeline::write_through(format, BlendMode::over, source, stored);
+            const glm::vec4 result = pipeline::write_colour(format, blends::over(), 15, source, stored);
             const glm::vec4 expected = keeps ? stored : pipeline::through_format(format, source);
             for (int i = 0; i < 3; ++i) finding.error(ulps(result[i], expected[i]));
         }
@@ -101,7 +101,8 @@ void add_products(std::vector<Case>& cases) {
                      "that colour, bit for bit", "ulp", 0.0, [](Finding& finding) {
                          for (const SurfaceFormat format : {SurfaceFormat::rgba16f, SurfaceFormat::rgba32f}) {
                              const glm::vec4 colour(0.75F, 1.0F / 1024.0F, 60000.0F, 0.5F);
-                             const glm::vec4 result = pipeline::write_through(format, BlendMode::over, colour, colour);
+                             const glm::vec4 result =
+                                 pipeline::write_colour(format, blends::over(), 15, colour, colour);
                              for (int i = 0; i < 3; ++i)
                                  finding.error(ulps(result[i], pipeline::through_format(format, colour)[i]));
                          }
@@ -113,8 +114,8 @@ void add_products(std::vector<Case>& cases) {
 
 void add_saturation(std::vector<Case>& cases) {
     const auto sum = [](Finding& finding, int a, int b) {
-        const Codes result =
-            pipeline::blend(BlendMode::add, Codes(static_cast<std::uint8_t>(a)), Codes(static_cast<std::uint8_t>(b)));
+        const Codes result = pipeline::blended(blends::of(blends::sum), Codes(static_cast<std::uint8_t>(a)),
+                                               Codes(static_cast<std::uint8_t>(b)));
         finding.error(result.r - std::min(a + b, 255));
     };
     cases.push_back(
@@ -132,8 +133,8 @@ void add_saturation(std::vector<Case>& cases) {
                          }
                      }});
     const auto largest = [](Finding& finding, SurfaceFormat format, float a, float b, float expected) {
-        const glm::vec4 result = pipeline::write_through(format, BlendMode::add, glm::vec4(a),
-                                                         pipeline::through_format(format, glm::vec4(b)));
+        const glm::vec4 result = pipeline::write_colour(format, blends::of(blends::sum), 15, glm::vec4(a),
+                                                        pipeline::through_format(format, glm::vec4(b)));
         finding.error(ulps(result.r, expected));
     };
     cases.push_back({"blending.add-floats-below", Side::below, "sums just below what float formats hold", "the sum",
@@ -177,8 +178,8 @@ void add_many_layers(std::vector<Case>& cases) {
                          int exact = 255;
                          for (int i = 0; i < many; ++i) {
                              const int source = i % 2 == 0 ? 0 : 64;
-                             stored = pipeline::write_through(
-                                 SurfaceFormat::rgba8, BlendMode::over,
+                             stored = pipeline::write_colour(
+                                 SurfaceFormat::rgba8, blends::over(), 15,
                                  glm::vec4(glm::vec3(static_cast<float>(source) / 255.0F), 16.0F / 255.0F), stored);
                              exact = exact_over(source, 16, exact);
                              finding.error(std::round(static_cast<double>(stored.r) * 255.0) - exact);
@@ -191,8 +192,8 @@ void add_many_layers(std::vector<Case>& cases) {
              for (const float alpha : {0x1p-4F, 0x1p-7F, 0x1p-10F}) {
                  glm::vec4 stored(1.0F);
                  for (int i = 0; i < many; ++i)
-                     stored = pipeline::write_through(SurfaceFormat::rgba32f, BlendMode::over,
-                                                      glm::vec4(glm::vec3(i % 2 == 0 ? 0.0F : 0.25F), alpha), stored);
+                     stored = pipeline::write_colour(SurfaceFormat::rgba32f, blends::over(), 15,
+                                                     glm::vec4(glm::vec3(i % 2 == 0 ? 0.0F : 0.25F), alpha), stored);
                  const double bound = 3.0 / static_cast<double>(alpha) * 0x1p-24;
                  finding.error(
                      relative_error(static_cast<double>(stored.r), exact_accumulation(static_cast<Quad>(alpha), true)) /
@@ -206,8 +207,8 @@ void add_many_layers(std::vector<Case>& cases) {
          [](Finding& finding) {
              glm::vec4 stored(1.0F);
              for (int i = 0; i < many; ++i)
-                 stored = pipeline::write_through(SurfaceFormat::rgba16f, BlendMode::over,
-                                                  glm::vec4(glm::vec3(0.25F), 0x1p-10F), stored);
+                 stored = pipeline::write_colour(SurfaceFormat::rgba16f, blends::over(), 15,
+                                                 glm::vec4(glm::vec3(0.25F), 0x1p-10F), stored);
              // A step moves C by (C - 1/4) / 1024; the quantum in [0.5, 1) is 2^-11, in [0.25, 0.5) 2^-12.
              const double exact = static_cast<double>(exact_accumulation(0x1p-10F, false));
              finding.error((static_cast<double>(stored.r) - exact) * 255.0);

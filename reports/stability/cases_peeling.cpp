@@ -2,6 +2,7 @@
 // and 10).
 #include "pipeline/functional/eye_depth.hpp"
 #include "pipeline/functional/surface_texel.hpp"
+#include "pipeline/raster_state.hpp"
 #include "reports/stability/catalogue.hpp"
 #include "reports/stability/floats.hpp"
 #include "reports/stability/quad.hpp"
@@ -178,7 +179,8 @@ int first_wins(const std::string& format, double quanta) {
         const auto code = [&](double depth) {
             return pipeline::depth_code(format_of(format), static_cast<float>(depth));
         };
-        wins += pipeline::depth_less(code(near), code(near + quanta * quantum_of(format))) ? 0 : 1;
+        const auto compare = pipeline::DepthState().compare;
+        wins += passes(compare, code(near), code(near + quanta * quantum_of(format))) ? 0 : 1;
     }
     return wins;
 }

@@ -9,8 +9,14 @@
 #include <array>
 #include <numeric>
 
+namespace traces {
+
+enum class BlendMode : std::uint8_t { replace, over, add, least, greatest };
+
+} // namespace traces
+
 template <>
-struct sim::EnumNames<pipeline::BlendMode> {
+struct sim::EnumNames<traces::BlendMode> {
     static constexpr std::array<std::string_view, 5> names{"replace", "over", "add", "least", "greatest"};
 };
 
@@ -19,7 +25,7 @@ namespace traces {
 namespace {
 
 struct BlendedParams {
-    pipeline::BlendMode mode = pipeline::BlendMode::over;
+    BlendMode mode = BlendMode::over;
     float opacity = 0.5F;
     std::array<float, 3> background = {1.0F, 1.0F, 1.0F};
     pipeline::ColourChoice colour_format = pipeline::ColourChoice::rgba8;
@@ -34,6 +40,22 @@ struct BlendedParams {
 };
 static_assert(sim::fully_described<BlendedParams>);
 
+pipeline::BlendState state_of(BlendMode mode) {
+    switch (mode) {
+    case BlendMode::replace:
+        break;
+    case BlendMode::over:
+        return pipeline::blends::over();
+    case BlendMode::add:
+        return pipeline::blends::of(pipeline::blends::sum);
+    case BlendMode::least:
+        return pipeline::blends::of(pipeline::blends::least);
+    case BlendMode::greatest:
+        return pipeline::blends::of(pipeline::blends::greatest);
+    }
+    return {};
+}
+
 pipeline::Frame build(const Scene& scene, const pipeline::View& view, const BlendedParams& params) {
     pipeline::Frame frame = frame_of(scene, view);
     frame.opacity = params.opacity;
@@ -44,7 +66,7 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const Blen
 
     PassGraph graph(std::move(frame));
     graph.add_clear("clear", {colour_surface});
-    graph.add_draw("blended", {colour_surface}, {colour_surface}, std::move(all), true, params.mode);
+    graph.add_draw("blended", {colour_surface}, {colour_surface}, std::move(all), true, state_of(params.mode));
     graph.output(colour_surface);
     return graph.lower();
 }

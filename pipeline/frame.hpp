@@ -10,6 +10,7 @@
 #include "pipeline/resolve.hpp"
 #include "pipeline/surface_format.hpp"
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
@@ -55,14 +56,32 @@ struct Pass {
     std::vector<std::string> writes;  ///< surfaces
     std::vector<std::uint32_t> draws; ///< indices into Frame::draws; draw passes only
     std::vector<DrawPart> parts;      ///< of those draws, in this order; empty: each draw whole
-    DepthState depth;
-    bool colour = false;              ///< writes the shaded colour to the "colour" surface
+    std::vector<RasterState> states = std::vector<RasterState>(1); ///< that its draws have
+    std::vector<std::uint32_t> state_of_draw; ///< index into `states`, one for each of `draws`; empty: all the first
+    bool colour = false;              ///< writes the shaded colour to the "colour" surface, blended where a state says
     std::uint32_t colour_targets = 1; ///< written at once, all of the colour format; the first holds the colour
-    BlendState blend;                 ///< where it is enabled, Frame::opacity scales the alpha
     bool both_faces = false;          ///< draws triangles that face away, too
     bool kbuffer = false;             ///< fragments go through the frame's modify program
     /// Attributes that the vertex shader reads beside what shading needs: bits as in mask_of(Semantic).
     std::uint32_t attributes = 0;
+
+    bool tests_depth() const {
+        return any_state([](const RasterState& state) { return state.depth.test; });
+    }
+    bool writes_depth() const {
+        return any_state([](const RasterState& state) { return state.depth.write; });
+    }
+    bool tests_stencil() const {
+        return any_state([](const RasterState& state) { return state.stencil.test; });
+    }
+    /// The "depth" surface, which holds the stencil as well.
+    bool uses_depth() const { return tests_depth() || writes_depth() || tests_stencil(); }
+
+  private:
+    template <class Predicate>
+    bool any_state(Predicate predicate) const {
+        return std::any_of(states.begin(), states.end(), predicate);
+    }
 };
 
 /// What the passes of a frame use. Units, attributes and surfaces that nothing here asks for are not built, fetched or
@@ -110,7 +129,7 @@ struct Frame {
     SurfaceFormat depth_format = SurfaceFormat::d24;
     SurfaceFormat colour_format = SurfaceFormat::rgba8;
     glm::vec4 background{1.0F};
-    float opacity = 0.5F; ///< uniform alpha of composited layers (A11)
+    float opacity = 0.5F; ///< uniform alpha of composited layers (A11); scales that of every blended write, too
 
     const View& view_of_kbuffer() const { return kbuffer_view ? *kbuffer_view : view; }
     const View& view_of(const Pass& pass) const { return pass.kbuffer ? view_of_kbuffer() : view; }

@@ -16,15 +16,22 @@ constexpr sim::Cycle hit = 2, miss = 103;
 const pipeline::BlendState sum = pipeline::blends::of(pipeline::blends::sum);
 
 struct DepthPass : tests::QuadPass {
-    DepthPass() { context.depth = {true, true}; }
+    explicit DepthPass(const pipeline::BlendState& blend = {}) {
+        pipeline::RasterState state;
+        state.depth = {true, true};
+        state.blend[0] = blend;
+        context.states = pipeline::DrawStates(state);
+    }
 };
 struct ColourPass : tests::QuadPass {
     pipeline::Frame frame;
     explicit ColourPass(const pipeline::BlendState& blend = {}) {
-        frame.colour_format = pipeline::SurfaceFormat::rgba32f;
+        pipeline::RasterState state;
+        state.blend[0] = blend;
+        context.states = pipeline::DrawStates(state);
+        context.colour_format = pipeline::SurfaceFormat::rgba32f;
         context.frame = &frame;
         context.colour_write = true;
-        context.blend = blend;
     }
 };
 
@@ -99,11 +106,10 @@ TEST(RopFixedFunction, OpaqueColourIsNotFetchedAndBlendedColourIs) {
 // Four ROPs, four fragments: 16 bytes of depth read, 16 written, 16 of colour written, 16 read where they are blended.
 TEST(RopFixedFunction, PortOfTheCacheSetsTheRate) {
     const auto cycles_per_quad = [](bool colour, const pipeline::BlendState& blend, float depth, std::uint32_t port) {
-        DepthPass pass;
+        DepthPass pass(blend);
         pipeline::Frame frame;
         pass.context.frame = &frame;
         pass.context.colour_write = colour;
-        pass.context.blend = blend;
         for (const std::uint32_t block : {0U, 1U, 2U, 3U}) pass.quad(block % 2 * 2, block / 2 * 2, 15, depth);
         RopBench bench(pass, {.rop = {.bytes_per_clk = port}});
         bench.run();

@@ -42,6 +42,7 @@ struct Triangle {
     QuadId first_quad = 0;
     std::uint32_t quads = 0; ///< of all samples; may be 0: covers no pixel centre, or no sample
     std::uint32_t tiles = 0; ///< 8x8 tiles the rasterizer visits, at least 1
+    bool front = true;       ///< its corners run counter-clockwise on the screen; see RasterState::front_is_clockwise
 };
 
 /// What became of an input primitive.

@@ -82,9 +82,10 @@ struct RunResult {
 
     // Per place, row 0 first: with one sample, width * height pixels; see sample_planes.hpp. The k-buffer and what
     // follows from it are of its own view, colour and depth of the frame's.
-    std::vector<float> kbuffer; ///< floats_per_pixel floats each; empty when the frame has no k-buffer
-    std::vector<float> colour;  ///< RGBA of the "colour" surface; empty when the frame has none
-    std::vector<float> depth;   ///< window depths of the "depth" surface; empty when the frame has none
+    std::vector<float> kbuffer;        ///< floats_per_pixel floats each; empty when the frame has no k-buffer
+    std::vector<float> colour;         ///< RGBA of the "colour" surface; empty when the frame has none
+    std::vector<float> depth;          ///< window depths of the "depth" surface; empty when the frame has none
+    std::vector<std::uint8_t> stencil; ///< of the same surface, where its format has any
     // Per pixel, row 0 first: what happened to any of its samples.
     std::vector<std::uint8_t> hazard_mask; ///< bit i: hazard class i happened here; empty when there was none
     std::vector<std::uint8_t> wrong_mask;  ///< 1 where the pixel differs from the reference

@@ -66,7 +66,8 @@ class Coverage {
             samples == 1 ? for_each_quad(set_up(part.corners[0], part.corners[1], part.corners[2], plan_.viewport), add)
                          : for_each_sampled_quad(part.corners, plan_.viewport, samples, add);
         output_.triangles.push_back({range_.draw, primitive, static_cast<QuadId>(first),
-                                     static_cast<std::uint32_t>(output_.quads.size() - first), tiles});
+                                     static_cast<std::uint32_t>(output_.quads.size() - first), tiles,
+                                     signed_area(part.corners[0], part.corners[1], part.corners[2]) < 0});
     }
 
     // The quads of the samples that are covered; four bits of the mask for each sample.

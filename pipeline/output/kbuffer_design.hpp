@@ -63,7 +63,7 @@ struct BlenderSite {
 struct PassesSite {
     PeelRule rule = PeelRule::exact;
     double eps = 1e-4;
-    DepthFormat depth_format = DepthFormat::d32f;
+    SurfaceFormat depth_format = SurfaceFormat::d32f;
     PassCapture capture = PassCapture::nearest;
     std::uint32_t passes = 0; ///< geometry passes; 0 = one for each entry
 };
@@ -142,8 +142,3 @@ class KBufferDesign {
 };
 
 } // namespace pipeline
-
-template <>
-struct sim::EnumNames<pipeline::DepthFormat> {
-    static constexpr std::array<std::string_view, 3> names{"d16", "d24", "d32f"};
-};

@@ -2,7 +2,7 @@
 //
 // Both get the same vertices and the same matrix. Triangles that lie within the screen must agree in every pixel.
 #include "pipeline/functional/clip.hpp"
-#include "pipeline/functional/colour_format.hpp"
+#include "pipeline/functional/fragment_operations.hpp"
 #include "pipeline/functional/front_end.hpp"
 #include "pipeline/functional/vertex_transform.hpp"
 #include "sim/random.hpp"
@@ -256,7 +256,7 @@ TEST_F(MesaRasterization, OrderedBlendingInFloatIsBitExact) {
     const FragmentStream stream = rasterize_scene(scene);
     std::vector<glm::vec4> own(std::size_t{scene.width} * scene.height, glm::vec4(0.0F));
     for_each_fragment(stream, [&](std::size_t pixel, std::size_t quad, std::size_t) {
-        own[pixel] = blend(pipeline::BlendMode::over, colours[primitive_of(stream, stream.quads[quad])], own[pixel]);
+        own[pixel] = blended(pipeline::blends::over(), colours[primitive_of(stream, stream.quads[quad])], own[pixel]);
     });
     const MesaPicture mesa = renderer_->render(scene, MesaMode::blend, colours);
     std::size_t wrong = 0;

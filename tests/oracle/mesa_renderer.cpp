@@ -32,8 +32,9 @@ layout(location = 0) out vec4 colour;
 layout(location = 1) out uint id;
 uniform samplerBuffer colours;
 uniform bool counting;
+uniform int first_triangle;
 void main() {
-    colour = counting ? vec4(1.0) : texelFetch(colours, gl_PrimitiveID);
+    colour = counting ? vec4(1.0) : texelFetch(colours, gl_PrimitiveID + first_triangle);
     id = uint(gl_PrimitiveID) + 1u;
 }
 )";
@@ -81,27 +82,33 @@ EGLContext open_context(EGLDisplay display) {
     return eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context) == EGL_TRUE ? context : EGL_NO_CONTEXT;
 }
 
-/// RGBA32F, R32UI and D32F targets of one size.
+/// Colour, R32UI and depth targets of one size; with D24S8 the stencil is attached, too.
 class Targets {
   public:
-    Targets(GLsizei width, GLsizei height) {
+    Targets(GLsizei width, GLsizei height, GLenum colour = GL_RGBA32F, GLenum depth = GL_DEPTH_COMPONENT32F,
+            const glm::vec4& background = glm::vec4(0.0F)) {
         glGenFramebuffers(1, &framebuffer_);
         glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
         glGenRenderbuffers(3, buffers_.data());
-        attach(0, GL_RGBA32F, GL_COLOR_ATTACHMENT0, width, height);
+        attach(0, colour, GL_COLOR_ATTACHMENT0, width, height);
         attach(1, GL_R32UI, GL_COLOR_ATTACHMENT1, width, height);
-        attach(2, GL_DEPTH_COMPONENT32F, GL_DEPTH_ATTACHMENT, width, height);
+        attach(2, depth, depth == GL_DEPTH24_STENCIL8 ? GL_DEPTH_STENCIL_ATTACHMENT : GL_DEPTH_ATTACHMENT, width,
+               height);
         constexpr std::array<GLenum, 2> draw_buffers{GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
         glDrawBuffers(2, draw_buffers.data());
         if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
             throw std::runtime_error("the framebuffer of the OpenGL reference is not complete");
         glViewport(0, 0, width, height);
-        constexpr std::array<float, 4> black{};
         constexpr std::array<GLuint, 4> none{};
         constexpr float far = 1.0F;
-        glClearBufferfv(GL_COLOR, 0, black.data());
+        constexpr GLint no_stencil = 0;
+        glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+        glDepthMask(GL_TRUE);
+        glStencilMask(0xFF);
+        glClearBufferfv(GL_COLOR, 0, &background[0]);
         glClearBufferuiv(GL_COLOR, 1, none.data());
         glClearBufferfv(GL_DEPTH, 0, &far);
+        glClearBufferiv(GL_STENCIL, 0, &no_stencil);
     }
     ~Targets() {
         glDeleteFramebuffers(1, &framebuffer_);
@@ -120,6 +127,61 @@ class Targets {
     GLuint framebuffer_ = 0;
     std::array<GLuint, 3> buffers_{};
 };
+
+void set(GLenum what, bool on) { on ? glEnable(what) : glDisable(what); }
+
+template <class Value, std::size_t n>
+GLenum of(const std::array<GLenum, n>& names, Value value) {
+    return names.at(static_cast<std::size_t>(value));
+}
+
+constexpr std::array<GLenum, 8> compares{GL_NEVER,   GL_LESS,     GL_EQUAL,  GL_LEQUAL,
+                                         GL_GREATER, GL_NOTEQUAL, GL_GEQUAL, GL_ALWAYS};
+constexpr std::array<GLenum, 15> factors{GL_ZERO,
+                                         GL_ONE,
+                                         GL_SRC_COLOR,
+                                         GL_ONE_MINUS_SRC_COLOR,
+                                         GL_DST_COLOR,
+                                         GL_ONE_MINUS_DST_COLOR,
+                                         GL_SRC_ALPHA,
+                                         GL_ONE_MINUS_SRC_ALPHA,
+                                         GL_DST_ALPHA,
+                                         GL_ONE_MINUS_DST_ALPHA,
+                                         GL_CONSTANT_COLOR,
+                                         GL_ONE_MINUS_CONSTANT_COLOR,
+                                         GL_CONSTANT_ALPHA,
+                                         GL_ONE_MINUS_CONSTANT_ALPHA,
+                                         GL_SRC_ALPHA_SATURATE};
+constexpr std::array<GLenum, 5> equations{GL_FUNC_ADD, GL_FUNC_SUBTRACT, GL_FUNC_REVERSE_SUBTRACT, GL_MIN, GL_MAX};
+constexpr std::array<GLenum, 8> stencil_operations{GL_KEEP, GL_ZERO,      GL_REPLACE,   GL_INCR,
+                                                   GL_DECR, GL_INCR_WRAP, GL_DECR_WRAP, GL_INVERT};
+
+void set_face(GLenum face, const pipeline::StencilFace& state) {
+    glStencilFuncSeparate(face, of(compares, state.compare), state.reference, state.compare_mask);
+    glStencilOpSeparate(face, of(stencil_operations, state.stencil_fails), of(stencil_operations, state.depth_fails),
+                        of(stencil_operations, state.passes));
+    glStencilMaskSeparate(face, state.write_mask);
+}
+
+void set_raster_state(const pipeline::RasterState& state) {
+    const pipeline::BlendState& blend = state.blend[0];
+    glDisable(GL_CULL_FACE);
+    glDisable(GL_BLEND); // of the second target, which holds integers
+    if (blend.enabled) glEnablei(GL_BLEND, 0);
+    glBlendFuncSeparatei(0, of(factors, blend.colour.source), of(factors, blend.colour.target),
+                         of(factors, blend.alpha.source), of(factors, blend.alpha.target));
+    glBlendEquationSeparatei(0, of(equations, blend.colour.equation), of(equations, blend.alpha.equation));
+    glBlendColor(blend.constant.r, blend.constant.g, blend.constant.b, blend.constant.a);
+    const auto channel = [&](unsigned i) { return static_cast<GLboolean>(state.write_mask[0] >> i & 1U); };
+    glColorMaski(0, channel(0), channel(1), channel(2), channel(3));
+    set(GL_DEPTH_TEST, state.depth.used()); // OpenGL writes depth only while it tests
+    glDepthFunc(state.depth.test ? of(compares, state.depth.compare) : GL_ALWAYS);
+    glDepthMask(state.depth.write ? GL_TRUE : GL_FALSE);
+    set(GL_STENCIL_TEST, state.stencil.test);
+    set_face(GL_FRONT, state.stencil.front);
+    set_face(GL_BACK, state.stencil.back);
+    glFrontFace(state.front_is_clockwise ? GL_CCW : GL_CW); // OpenGL sees the picture upside down, see load()
+}
 
 template <class Element>
 void upload(GLenum target, GLuint buffer, const std::vector<Element>& elements) {
@@ -145,7 +207,7 @@ class LlvmpipeRenderer : public MesaRenderer {
                        bool cull_back) override {
         const Targets targets(static_cast<GLsizei>(scene.width), static_cast<GLsizei>(scene.height));
         set_state(mode, cull_back);
-        load(scene, mode, colours);
+        load(scene, mode == MesaMode::blend, colours);
         for (std::size_t i = 0; i < queries_.size(); ++i) glBeginQuery(query_targets[i], queries_[i]);
         glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(scene.indices.size()), GL_UNSIGNED_INT, nullptr);
         for (const GLenum target : query_targets) glEndQuery(target);
@@ -154,12 +216,38 @@ class LlvmpipeRenderer : public MesaRenderer {
         return picture;
     }
 
+    MesaCodes render_states(const TriangleScene& scene, const std::vector<MesaDraw>& draws,
+                            const std::vector<glm::vec4>& colours, const glm::vec4& background) override {
+        const auto width = static_cast<GLsizei>(scene.width), height = static_cast<GLsizei>(scene.height);
+        const Targets targets(width, height, GL_RGBA8, GL_DEPTH24_STENCIL8, background);
+        load(scene, true, colours);
+        for (const MesaDraw& draw : draws) {
+            set_raster_state(draw.state);
+            glUniform1i(glGetUniformLocation(program_, "first_triangle"), static_cast<GLint>(draw.first_triangle));
+            glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(draw.triangles * 3), GL_UNSIGNED_INT,
+                           reinterpret_cast<const void*>(std::size_t{draw.first_triangle} * 3 * sizeof(GLuint)));
+        }
+        set_raster_state({});
+        glUniform1i(glGetUniformLocation(program_, "first_triangle"), 0);
+        const std::size_t pixels = std::size_t{scene.width} * scene.height;
+        MesaCodes codes{std::vector<glm::u8vec4>(pixels), std::vector<std::uint32_t>(pixels),
+                        std::vector<std::uint8_t>(pixels)};
+        glReadBuffer(GL_COLOR_ATTACHMENT0);
+        glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, codes.colour.data());
+        glReadPixels(0, 0, width, height, GL_DEPTH_STENCIL, GL_UNSIGNED_INT_24_8, codes.depth.data());
+        for (std::size_t i = 0; i < pixels; ++i) {
+            codes.stencil[i] = static_cast<std::uint8_t>(codes.depth[i] & 0xFFU);
+            codes.depth[i] >>= 8U;
+        }
+        if (glGetError() != GL_NO_ERROR) throw std::runtime_error("the OpenGL reference reports an error");
+        return codes;
+    }
+
   private:
     static constexpr std::array<GLenum, 4> query_targets{GL_SAMPLES_PASSED, GL_FRAGMENT_SHADER_INVOCATIONS,
                                                          GL_CLIPPING_INPUT_PRIMITIVES, GL_CLIPPING_OUTPUT_PRIMITIVES};
 
     static void set_state(MesaMode mode, bool cull_back) {
-        const auto set = [](GLenum what, bool on) { on ? glEnable(what) : glDisable(what); };
         set(GL_DEPTH_TEST, mode == MesaMode::nearest);
         glDepthFunc(GL_LESS);
         glDisable(GL_BLEND);
@@ -174,13 +262,13 @@ class LlvmpipeRenderer : public MesaRenderer {
         glFrontFace(GL_CW); // OpenGL sees the picture upside down, see load()
     }
 
-    void load(const TriangleScene& scene, MesaMode mode, const std::vector<glm::vec4>& colours) {
+    void load(const TriangleScene& scene, bool coloured, const std::vector<glm::vec4>& colours) {
         // OpenGL's row 0 is the bottom row. With y negated it becomes the top row and the tie rule the top-left rule.
         glm::mat4 matrix = scene.matrix;
         for (int column = 0; column < 4; ++column) matrix[column][1] = -matrix[column][1];
         glUseProgram(program_);
         glUniformMatrix4fv(glGetUniformLocation(program_, "clip_matrix"), 1, GL_FALSE, &matrix[0][0]);
-        glUniform1i(glGetUniformLocation(program_, "counting"), mode == MesaMode::blend ? 0 : 1);
+        glUniform1i(glGetUniformLocation(program_, "counting"), coloured ? 0 : 1);
         glUniform1i(glGetUniformLocation(program_, "colours"), 0);
         glBindVertexArray(vertex_array_);
         upload(GL_ARRAY_BUFFER, buffers_[0], scene.positions);

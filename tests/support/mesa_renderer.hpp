@@ -2,6 +2,8 @@
 // surface.
 #pragma once
 
+#include "pipeline/raster_state.hpp"
+
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <memory>
@@ -37,6 +39,19 @@ struct MesaPicture {
     std::uint64_t clipping_output = 0;
 };
 
+/// Triangles of a scene that are drawn with one state: blending, write mask, depth and stencil of it count.
+struct MesaDraw {
+    std::uint32_t first_triangle = 0, triangles = 0;
+    pipeline::RasterState state;
+};
+
+/// RGBA8 and D24S8 as they are stored; row 0 is the top row.
+struct MesaCodes {
+    std::vector<glm::u8vec4> colour;
+    std::vector<std::uint32_t> depth;
+    std::vector<std::uint8_t> stencil;
+};
+
 class MesaRenderer {
   public:
     /// Null when there is no such OpenGL here; then `reason` says what is missing.
@@ -49,6 +64,10 @@ class MesaRenderer {
     /// culled.
     virtual MesaPicture render(const TriangleScene& scene, MesaMode mode, const std::vector<glm::vec4>& colours = {},
                                bool cull_back = false) = 0;
+
+    /// Draws of the scene one after the other into RGBA8 and D24S8, cleared to `background`, 1 and 0.
+    virtual MesaCodes render_states(const TriangleScene& scene, const std::vector<MesaDraw>& draws,
+                                    const std::vector<glm::vec4>& colours, const glm::vec4& background) = 0;
 };
 
 } // namespace tests

@@ -6,7 +6,7 @@
 // (design `multipass`); any design that keeps nearest depths can capture them. Positions are unprojected from a 32-bit
 // depth buffer and rounded to the format of the map, as the render target that held them was.
 #include "models/programs/nearest_k.hpp"
-#include "pipeline/functional/colour_format.hpp"
+#include "pipeline/functional/fragment_operations.hpp"
 #include "pipeline/functional/parallel.hpp"
 #include "sim/check.hpp"
 #include "traces/pass_graph.hpp"
@@ -298,9 +298,9 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const Soft
     frame.light = {light.centre, light.right * (light.width / 2.0), light.up * (light.width / 2.0)};
     const auto picture = std::make_shared<const ShadowPicture>(light, params);
     frame.resolve = picture;
-    frame.depth_format = pipeline::DepthFormat::d32f;
+    frame.depth_format = pipeline::SurfaceFormat::d32f;
     frame.colour_format =
-        params.format == ShadowFormat::rgba16f ? pipeline::ColourFormat::rgba16f : pipeline::ColourFormat::rgba32f;
+        params.format == ShadowFormat::rgba16f ? pipeline::SurfaceFormat::rgba16f : pipeline::SurfaceFormat::rgba32f;
     frame.background = {params.background[0], params.background[1], params.background[2], 1.0F};
     // Draws of their own for each view, so that reports tell them apart.
     const auto draws = static_cast<std::uint32_t>(frame.draws.size());

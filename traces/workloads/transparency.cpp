@@ -5,7 +5,7 @@
 // Instead of A6 a program that composites may run: A7, multi-layer alpha blending, or one that the user wrote.
 #include "models/programs/library.hpp"
 #include "models/programs/nearest_k.hpp"
-#include "pipeline/output/kbuffer_design.hpp" // names of the depth formats
+#include "pipeline/format_choice.hpp"
 #include "sim/check.hpp"
 #include "sim/suggest.hpp"
 #include "traces/pass_graph.hpp"
@@ -45,7 +45,7 @@ struct TransparencyParams {
     Faces faces = Faces::both;
     float opacity = 0.5F;
     std::array<float, 3> background = {1.0F, 1.0F, 1.0F};
-    pipeline::DepthFormat depth_format = pipeline::DepthFormat::d24;
+    pipeline::DepthChoice depth_format = pipeline::DepthChoice::d24;
 
     static constexpr auto fields() {
         using P = TransparencyParams;
@@ -98,7 +98,7 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const Tran
     frame.resolve = choice.picture;
     frame.opacity = params.opacity;
     frame.background = {params.background[0], params.background[1], params.background[2], 1.0F};
-    frame.depth_format = params.depth_format;
+    frame.depth_format = format_of(params.depth_format);
     Split draws = split(frame, params.transparent);
 
     const bool with_opaque = !draws.opaque.empty();

@@ -183,6 +183,7 @@ struct Material {
     bool double_sided = false;
     float transmission = 0.0F; ///< > 0: drawn as transparent
     bool unlit = false;
+    bool flat = false; ///< colour and normal are those of the provoking vertex
 
     bool transparent() const { return alpha_mode == AlphaMode::blend || transmission > 0.0F; }
 };

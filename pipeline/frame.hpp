@@ -43,7 +43,7 @@ enum class FragmentColour : std::uint8_t {
     cosine ///< red, green and blue are |cos| of the angle between the surface normal and the direction to the eye
 };
 
-struct DepthState {
+struct PassDepth {
     bool test = false; ///< LESS against the depth surface; a strict test keeps the first of equal depths
     bool write = false;
 };
@@ -65,7 +65,7 @@ struct Pass {
     std::vector<std::string> writes;  ///< surfaces
     std::vector<std::uint32_t> draws; ///< indices into Frame::draws; draw passes only
     std::vector<DrawPart> parts;      ///< of those draws, in this order; empty: each draw whole
-    DepthState depth;
+    PassDepth depth;
     bool colour = false;                  ///< writes the shaded colour to the "colour" surface
     std::uint32_t colour_targets = 1;     ///< written at once, all of the colour format; the first holds the colour
     BlendMode blend = BlendMode::replace; ///< how; but for replace, Frame::opacity scales the alpha

@@ -15,7 +15,7 @@ inline constexpr const char* colour_surface = "colour";
 inline constexpr const char* kbuffer_surface = "kbuffer";
 inline constexpr const char* picture_surface = "picture"; ///< what a resolve pass writes
 
-/// Passes in the order of submission. A pass names what it reads and writes; `DepthState` and the flags `colour` and
+/// Passes in the order of submission. A pass names what it reads and writes; `PassDepth` and the flags `colour` and
 /// `kbuffer` of pipeline::Pass follow from those names and from add_draw's arguments.
 class PassGraph {
   public:

@@ -32,7 +32,7 @@ struct PassContext {
     const Frame* frame = nullptr;
     SurfaceLayout layout;
     FragmentEnd end = FragmentEnd::depth_colour;
-    DepthState depth;
+    PassDepth depth;
     bool colour_write = false;
     BlendMode blend = BlendMode::replace;
     std::uint32_t colour_bytes = 4; ///< per pixel of the colour target

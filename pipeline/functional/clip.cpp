@@ -9,18 +9,30 @@ namespace pipeline {
 namespace {
 
 /// A plane of the clip volume: inside where sign * coordinate <= reach * w.
-struct Plane {
+struct VolumePlane {
     std::uint32_t bit;
     int axis;
     double sign;
     double reach;
 
-    double distance(const glm::dvec4& clip) const { return reach * clip.w - sign * clip[axis]; }
+    double distance(const ClippedCorner& corner) const { return reach * corner.clip.w - sign * corner.clip[axis]; }
 
     /// Rounding must not leave the new corner off the plane.
     void settle(glm::dvec4& clip) const { clip[axis] = sign * reach * clip.w; }
 };
 
+/// A plane that is known by the distances of the triangle's vertices. Two of three weights make an edge's sum, so it is
+/// the same for both triangles at the edge.
+struct UserPlane {
+    glm::dvec3 distances;
+
+    double distance(const ClippedCorner& corner) const {
+        return distances.x * corner.weights.x + distances.y * corner.weights.y + distances.z * corner.weights.z;
+    }
+    void settle(glm::dvec4&) const {}
+};
+
+template <class Plane>
 ClippedCorner cut(const Plane& plane, const ClippedCorner& inner, double inner_distance, const ClippedCorner& outer,
                   double outer_distance) {
     const double t = inner_distance / (inner_distance - outer_distance);
@@ -31,6 +43,7 @@ ClippedCorner cut(const Plane& plane, const ClippedCorner& inner, double inner_d
     return result;
 }
 
+template <class Plane>
 ClippedPolygon clip_polygon(const Plane& plane, const ClippedPolygon& polygon) {
     ClippedPolygon result;
     const auto add = [&](const ClippedCorner& corner) {
@@ -40,8 +53,8 @@ ClippedPolygon clip_polygon(const Plane& plane, const ClippedPolygon& polygon) {
     for (std::uint32_t i = 0; i < polygon.count; ++i) {
         const ClippedCorner& here = polygon.corners[i];
         const ClippedCorner& next = polygon.corners[i + 1 < polygon.count ? i + 1 : 0];
-        const double here_distance = plane.distance(here.clip);
-        const double next_distance = plane.distance(next.clip);
+        const double here_distance = plane.distance(here);
+        const double next_distance = plane.distance(next);
         const bool here_inside = here_distance >= 0.0;
         const bool next_inside = next_distance >= 0.0;
         if (here_inside) add(here);
@@ -54,26 +67,48 @@ ClippedPolygon clip_polygon(const Plane& plane, const ClippedPolygon& polygon) {
 
 } // namespace
 
-ClippedPolygon clip_triangle(const Viewport& viewport, const std::array<const ScreenVertex*, 3>& triangle) {
+UserPlanes::UserPlanes(const RasterState& state, const glm::dmat4& model_to_eye) : cutting_(state.clip_planes) {
+    for (std::size_t i = 0; i < most_clip_distances; ++i)
+        planes_[i] = glm::transpose(model_to_eye) * glm::dvec4(state.clip_plane[i]);
+}
+
+ClipDistances UserPlanes::measure(const glm::vec4& position, ScreenVertex& vertex) const {
+    ClipDistances distances{};
+    const glm::dvec4 place(glm::dvec3(position), 1.0);
+    for (std::uint32_t i = 0; i < most_clip_distances; ++i) {
+        if ((cutting_ >> i & 1U) == 0) continue;
+        distances[i] = static_cast<float>(glm::dot(planes_[i], place));
+        if (!std::isfinite(distances[i])) vertex.outside = outside::not_finite;
+        if (distances[i] < 0.0F) vertex.outside |= outside::user_plane(i);
+    }
+    return distances;
+}
+
+ClippedPolygon clip_triangle(const Viewport& viewport, const PrimitiveCorners& triangle) {
     ClippedPolygon polygon;
     polygon.count = 3;
     std::uint32_t crossed = 0;
     for (std::uint32_t i = 0; i < 3; ++i) {
-        polygon.corners[i].clip = glm::dvec4(triangle[i]->clip);
+        polygon.corners[i].clip = glm::dvec4(triangle.vertices[i]->clip);
         polygon.corners[i].weights = glm::dvec3(0.0);
         polygon.corners[i].weights[static_cast<glm::length_t>(i)] = 1.0;
-        crossed |= triangle[i]->outside;
+        crossed |= triangle.vertices[i]->outside;
     }
     const auto guard_x = static_cast<double>(viewport.guard_x());
     const auto guard_y = static_cast<double>(viewport.guard_y());
-    const std::array<Plane, 6> planes{{{outside::near, 2, -1.0, 1.0},
-                                       {outside::far, 2, 1.0, 1.0},
-                                       {outside::guard_left, 0, -1.0, guard_x},
-                                       {outside::guard_right, 0, 1.0, guard_x},
-                                       {outside::guard_bottom, 1, -1.0, guard_y},
-                                       {outside::guard_top, 1, 1.0, guard_y}}};
-    for (const Plane& plane : planes)
+    const std::array<VolumePlane, 6> planes{{{outside::near, 2, -1.0, 1.0},
+                                             {outside::far, 2, 1.0, 1.0},
+                                             {outside::guard_left, 0, -1.0, guard_x},
+                                             {outside::guard_right, 0, 1.0, guard_x},
+                                             {outside::guard_bottom, 1, -1.0, guard_y},
+                                             {outside::guard_top, 1, 1.0, guard_y}}};
+    for (const VolumePlane& plane : planes)
         if ((crossed & plane.bit) != 0 && polygon.count != 0) polygon = clip_polygon(plane, polygon);
+    for (std::uint32_t i = 0; i < most_clip_distances; ++i) {
+        if ((crossed & outside::user_plane(i)) == 0 || polygon.count == 0) continue;
+        const auto& of = triangle.distances;
+        polygon = clip_polygon(UserPlane{{(*of[0])[i], (*of[1])[i], (*of[2])[i]}}, polygon);
+    }
     return polygon;
 }
 
@@ -87,7 +122,7 @@ ScreenVertex screen_vertex(const Viewport& viewport, const ClippedCorner& corner
     const float reach_y = viewport.guard_y() * w * 1.0001F;
     vertex.clip.x = std::clamp(vertex.clip.x, -reach_x, reach_x);
     vertex.clip.y = std::clamp(vertex.clip.y, -reach_y, reach_y);
-    vertex.clip.z = std::clamp(vertex.clip.z, -w, w);
+    if (!viewport.clamps_depth()) vertex.clip.z = std::clamp(vertex.clip.z, -w, w);
     viewport.project(vertex);
     return vertex;
 }

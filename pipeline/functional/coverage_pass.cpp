@@ -47,7 +47,7 @@ class Coverage {
 
   private:
     void cover(std::uint32_t primitive) {
-        cull_and_clip(plan_.viewport, instance_.culling, plan_.corners(instance_, read_(primitive)), parts_);
+        cull_and_clip(instance_.state->viewport, instance_.culling, plan_.corners(instance_, read_(primitive)), parts_);
         Primitive& result = stream_.primitives[range_.first_primitive + primitive];
         result.first_triangle = static_cast<std::uint32_t>(output_.triangles.size());
         result.triangles = static_cast<std::uint8_t>(parts_.count);
@@ -62,9 +62,10 @@ class Coverage {
         const std::size_t first = output_.quads.size();
         const auto add = [&](std::int32_t x, std::int32_t y, std::uint32_t mask) { add_group(number, x, y, mask); };
         const std::uint32_t samples = plan_.view.samples;
+        const Viewport& viewport = instance_.state->viewport;
         const std::uint32_t tiles =
-            samples == 1 ? for_each_quad(set_up(part.corners[0], part.corners[1], part.corners[2], plan_.viewport), add)
-                         : for_each_sampled_quad(part.corners, plan_.viewport, samples, add);
+            samples == 1 ? for_each_quad(set_up(part.corners[0], part.corners[1], part.corners[2], viewport), add)
+                         : for_each_sampled_quad(part.corners, viewport, samples, add);
         output_.triangles.push_back({range_.draw, primitive, static_cast<QuadId>(first),
                                      static_cast<std::uint32_t>(output_.quads.size() - first), tiles});
     }
@@ -155,8 +156,15 @@ void transform_pass(FrontEndPlan& plan) {
         const glm::mat4 matrix = clip_matrix(plan.view, *run.model);
         const AttributeReader position(plan.resources, *run.geometry->find(Semantic::position));
         ScreenVertex* target = plan.vertices.data() + run.first_vertex + piece.first;
+        const PlannedState& state = plan.states[run.state];
         for (std::uint32_t vertex = 0; vertex < piece.count; ++vertex)
-            target[vertex] = transform_vertex(matrix, plan.viewport, position(run.used.first + piece.first + vertex));
+            target[vertex] = transform_vertex(matrix, state.viewport, position(run.used.first + piece.first + vertex));
+        if (state.state->clip_planes != 0) {
+            const UserPlanes planes(*state.state, glm::dmat4(plan.view.view) * glm::dmat4(*run.model));
+            ClipDistances* distances = plan.distances.data() + run.first_distance + piece.first;
+            for (std::uint32_t vertex = 0; vertex < piece.count; ++vertex)
+                distances[vertex] = planes.measure(position(run.used.first + piece.first + vertex), target[vertex]);
+        }
         plan.progress.end_piece();
     });
 }

@@ -55,6 +55,7 @@ FragmentShader::FragmentShader(const Resources& resources, const Geometry& geome
       discards_(options.alpha_test && material.alpha_mode == AlphaMode::mask),
       lit_(options.colours && options.fragment_colour == FragmentColour::lit && !material.unlit),
       cosine_(options.colours && options.fragment_colour == FragmentColour::cosine),
+      flat_(material.flat),
       keeps_alpha_(material.transparent()) {
     const bool reads_colour = options.fragment_colour == FragmentColour::lit || discards_;
     normals_ = reader(resources, geometry, lit_ || cosine_, Semantic::normal);
@@ -87,9 +88,14 @@ glm::vec3 FragmentShader::face_normal(const std::array<std::uint32_t, 3>& vertic
 }
 
 ShaderTriangle FragmentShader::triangle(const std::array<std::uint32_t, 3>& vertices,
-                                        const std::array<glm::vec3, 3>* weights) const {
+                                        const std::array<glm::vec3, 3>* weights, std::size_t provoking) const {
     ShaderTriangle result;
     for (std::size_t i = 0; i < 3; ++i) result.corners[i] = corner(vertices[i]);
+    if (flat_)
+        for (ShaderCorner& corner : result.corners) {
+            corner.normal = result.corners[provoking].normal;
+            corner.colour = result.corners[provoking].colour;
+        }
     if ((lit_ || cosine_) && !normals_) result.face_normal = face_normal(vertices);
     if (lit_ && result.face_normal != glm::vec3(0.0F)) result.face_light = lambert(std::fabs(result.face_normal.z));
     if (weights == nullptr) return result;

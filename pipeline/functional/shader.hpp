@@ -61,8 +61,9 @@ class FragmentShader {
     bool samples() const { return sampler_.has_value(); }
 
     /// Attributes of a part of the primitive with these vertices. `weights`: see PrimitivePart; null when not clipped.
-    ShaderTriangle triangle(const std::array<std::uint32_t, 3>& vertices,
-                            const std::array<glm::vec3, 3>* weights) const;
+    /// `provoking`: the corner whose colour and normal a flat material takes.
+    ShaderTriangle triangle(const std::array<std::uint32_t, 3>& vertices, const std::array<glm::vec3, 3>* weights,
+                            std::size_t provoking) const;
 
     struct Output {
         std::array<glm::vec4, 4> colours; ///< linear RGBA; 0 where not covered
@@ -93,6 +94,7 @@ class FragmentShader {
     bool discards_; ///< the material is alpha-tested and somebody asks
     bool lit_;
     bool cosine_;
+    bool flat_;
     bool keeps_alpha_; ///< the surface blends; others are opaque
 };
 

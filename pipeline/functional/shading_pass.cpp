@@ -79,13 +79,17 @@ class Shading {
         if (range_ == nullptr || primitive - range_->first_primitive >= range_->primitives) enter_instance(primitive);
 
         const auto vertices = (*reader_)(primitive - range_->first_primitive);
-        cull_and_clip(plan_.viewport, instance_->culling, plan_.corners(*instance_, vertices), parts_);
+        const Viewport& viewport = instance_->state->viewport;
+        const RasterState& state = *instance_->state->state;
+        cull_and_clip(viewport, instance_->culling, plan_.corners(*instance_, vertices), parts_);
         const PrimitivePart& part = parts_.parts[number - stream_.primitives[primitive].first_triangle];
-        raster_ = set_up(part.corners[0], part.corners[1], part.corners[2], plan_.viewport);
+        raster_ = set_up(part.corners[0], part.corners[1], part.corners[2], viewport);
         depth_.emplace(raster_, part.corners);
+        depth_->add_bias(state.depth, plan_.options.depth_step);
         if (!shader_->needed()) return;
         attributes_.emplace(raster_, part.corners);
-        triangle_ = shader_->triangle(vertices, parts_.clipped ? &part.weights : nullptr);
+        triangle_ = shader_->triangle(vertices, parts_.clipped ? &part.weights : nullptr,
+                                      reader_->provoking(primitive - range_->first_primitive, state.provoking));
     }
 
     void shade(std::size_t first, std::span<Quad> group) {

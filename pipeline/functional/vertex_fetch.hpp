@@ -5,6 +5,7 @@
 
 #include "pipeline/draw.hpp"
 #include "pipeline/functional/number_formats.hpp"
+#include "pipeline/raster_state.hpp"
 
 #include <algorithm>
 #include <array>
@@ -130,6 +131,21 @@ class PrimitiveReader {
         }
         first += 2 * triangle;
         return {index_(first), index_(first + 1), index_(first + 2)};
+    }
+
+    /// Which of the three vertices is the provoking one (OpenGL 4.5, table 13.2).
+    std::size_t provoking(std::uint32_t primitive, ProvokingVertex which) const {
+        const bool last = which == ProvokingVertex::last;
+        switch (topology_) {
+        case Topology::triangle_strip:
+            if (!last) return 0;
+            return ((primitive - run_of(primitive).first_triangle) & 1U) == 0 ? 2 : 1;
+        case Topology::triangle_fan:
+            return last ? 1 : 0;
+        case Topology::triangles:
+            break;
+        }
+        return last ? 2 : 0;
     }
 
   private:

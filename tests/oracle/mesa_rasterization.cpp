@@ -290,7 +290,7 @@ std::vector<bool> near_clipped_edges(const TriangleScene& scene) {
                                                      glm::vec4(scene.positions[scene.indices[i + k]], 1.0F));
         if (((vertices[0].outside | vertices[1].outside | vertices[2].outside) & pipeline::outside::view_volume) == 0)
             continue;
-        const auto polygon = clip_triangle(viewport, {&vertices[0], &vertices[1], &vertices[2]});
+        const auto polygon = clip_triangle(viewport, {.vertices = {&vertices[0], &vertices[1], &vertices[2]}});
         for (std::uint32_t k = 0; k < polygon.count; ++k) {
             const auto from = screen_vertex(viewport, polygon.corners[k]);
             const auto to = screen_vertex(viewport, polygon.corners[(k + 1) % polygon.count]);

@@ -3,6 +3,7 @@
 #include "sim/check.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace pipeline {
 
@@ -65,6 +66,52 @@ ClippedPolygon clip_polygon(const Plane& plane, const ClippedPolygon& polygon) {
     return result;
 }
 
+template <class Plane>
+ClippedPolygon clip_ends(const Plane& plane, ClippedPolygon line) {
+    const double first = plane.distance(line.corners[0]), second = plane.distance(line.corners[1]);
+    if (first < 0.0 && second < 0.0) {
+        line.count = 0;
+    } else if (first < 0.0) {
+        line.corners[0] = cut(plane, line.corners[1], second, line.corners[0], first);
+    } else if (second < 0.0) {
+        line.corners[1] = cut(plane, line.corners[0], first, line.corners[1], second);
+    }
+    return line;
+}
+
+/// `clip` by every plane that some of the first `count` corners is outside of.
+template <class Clip>
+ClippedPolygon clip_by_all(const Viewport& viewport, const PrimitiveCorners& whole, std::uint32_t count,
+                           const Clip& clip) {
+    ClippedPolygon polygon;
+    polygon.count = count;
+    std::uint32_t crossed = 0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        polygon.corners[i].clip = glm::dvec4(whole.vertices[i]->clip);
+        polygon.corners[i].weights = glm::dvec3(0.0);
+        polygon.corners[i].weights[static_cast<glm::length_t>(i)] = 1.0;
+        crossed |= whole.vertices[i]->outside;
+    }
+    const auto guard_x = static_cast<double>(viewport.guard_x());
+    const auto guard_y = static_cast<double>(viewport.guard_y());
+    const std::array<VolumePlane, 6> planes{{{outside::near, 2, -1.0, 1.0},
+                                             {outside::far, 2, 1.0, 1.0},
+                                             {outside::guard_left, 0, -1.0, guard_x},
+                                             {outside::guard_right, 0, 1.0, guard_x},
+                                             {outside::guard_bottom, 1, -1.0, guard_y},
+                                             {outside::guard_top, 1, 1.0, guard_y}}};
+    for (const VolumePlane& plane : planes)
+        if ((crossed & plane.bit) != 0 && polygon.count != 0) polygon = clip(plane, polygon);
+    for (std::uint32_t i = 0; i < most_clip_distances; ++i) {
+        if ((crossed & outside::user_plane(i)) == 0 || polygon.count == 0) continue;
+        UserPlane plane{glm::dvec3(0.0)};
+        for (std::uint32_t corner = 0; corner < count; ++corner)
+            plane.distances[static_cast<glm::length_t>(corner)] = static_cast<double>((*whole.distances[corner])[i]);
+        polygon = clip(plane, polygon);
+    }
+    return polygon;
+}
+
 } // namespace
 
 UserPlanes::UserPlanes(const RasterState& state, const glm::dmat4& model_to_eye) : cutting_(state.clip_planes) {
@@ -85,31 +132,13 @@ ClipDistances UserPlanes::measure(const glm::vec4& position, ScreenVertex& verte
 }
 
 ClippedPolygon clip_triangle(const Viewport& viewport, const PrimitiveCorners& triangle) {
-    ClippedPolygon polygon;
-    polygon.count = 3;
-    std::uint32_t crossed = 0;
-    for (std::uint32_t i = 0; i < 3; ++i) {
-        polygon.corners[i].clip = glm::dvec4(triangle.vertices[i]->clip);
-        polygon.corners[i].weights = glm::dvec3(0.0);
-        polygon.corners[i].weights[static_cast<glm::length_t>(i)] = 1.0;
-        crossed |= triangle.vertices[i]->outside;
-    }
-    const auto guard_x = static_cast<double>(viewport.guard_x());
-    const auto guard_y = static_cast<double>(viewport.guard_y());
-    const std::array<VolumePlane, 6> planes{{{outside::near, 2, -1.0, 1.0},
-                                             {outside::far, 2, 1.0, 1.0},
-                                             {outside::guard_left, 0, -1.0, guard_x},
-                                             {outside::guard_right, 0, 1.0, guard_x},
-                                             {outside::guard_bottom, 1, -1.0, guard_y},
-                                             {outside::guard_top, 1, 1.0, guard_y}}};
-    for (const VolumePlane& plane : planes)
-        if ((crossed & plane.bit) != 0 && polygon.count != 0) polygon = clip_polygon(plane, polygon);
-    for (std::uint32_t i = 0; i < most_clip_distances; ++i) {
-        if ((crossed & outside::user_plane(i)) == 0 || polygon.count == 0) continue;
-        const auto& of = triangle.distances;
-        polygon = clip_polygon(UserPlane{{(*of[0])[i], (*of[1])[i], (*of[2])[i]}}, polygon);
-    }
-    return polygon;
+    return clip_by_all(viewport, triangle, 3,
+                       [](const auto& plane, const ClippedPolygon& polygon) { return clip_polygon(plane, polygon); });
+}
+
+ClippedPolygon clip_line(const Viewport& viewport, const PrimitiveCorners& line) {
+    return clip_by_all(viewport, line, 2,
+                       [](const auto& plane, const ClippedPolygon& ends) { return clip_ends(plane, ends); });
 }
 
 ScreenVertex screen_vertex(const Viewport& viewport, const ClippedCorner& corner) {

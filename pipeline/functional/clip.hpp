@@ -1,5 +1,5 @@
-// Clipping of triangles: exactly against the near and far planes and those of the user, in x and y only against the
-// guard band.
+// Clipping of triangles and lines: exactly against the near and far planes and those of the user, in x and y only
+// against the guard band.
 //
 // Two triangles that share an edge get the same new vertices on it, bit for bit: an edge is always cut from its inner
 // end, the planes always come in the same order. So no crack opens between them.
@@ -44,7 +44,7 @@ struct ClippedCorner {
 inline constexpr std::uint32_t most_clip_planes = 6 + most_clip_distances;
 inline constexpr std::uint32_t most_clipped_corners = 3 + most_clip_planes;
 
-/// A convex polygon: a triangle cut by planes.
+/// A convex polygon: a triangle, or line, cut by planes.
 struct ClippedPolygon {
     std::array<ClippedCorner, most_clipped_corners> corners;
     std::uint32_t count = 0; ///< 0: nothing is left
@@ -52,6 +52,8 @@ struct ClippedPolygon {
 
 /// Clips against those planes that some corner is outside of. All coordinates must be finite.
 ClippedPolygon clip_triangle(const Viewport& viewport, const PrimitiveCorners& triangle);
+/// The same of the line between corners 0 and 1: two corners, or none.
+ClippedPolygon clip_line(const Viewport& viewport, const PrimitiveCorners& line);
 
 /// The corner as a vertex; never outside of the guard band, whatever the rounding of the cut.
 ScreenVertex screen_vertex(const Viewport& viewport, const ClippedCorner& corner);

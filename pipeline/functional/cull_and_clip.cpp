@@ -1,5 +1,6 @@
 #include "pipeline/functional/cull_and_clip.hpp"
 
+#include "pipeline/functional/points_lines.hpp"
 #include "pipeline/functional/raster_triangle.hpp"
 
 #include <algorithm>
@@ -87,6 +88,59 @@ void cull_and_clip(const Viewport& viewport, Culling culling, const PrimitiveCor
         if (parts.fate != PrimitiveFate::drawn) return;
         parts.count = 1;
         parts.parts[0].corners = {a, b, c};
+    }
+}
+
+void cull_point(const Viewport& viewport, const RasterState& state, const PrimitiveCorners& point,
+                PrimitiveParts& parts) {
+    const ScreenVertex& centre = *point.vertices[0];
+    parts.count = 0;
+    parts.clipped = false;
+    if ((centre.outside & outside::not_finite) != 0) {
+        parts.fate = PrimitiveFate::culled_degenerate;
+    } else if ((centre.outside & (outside::view_volume | outside::user_planes)) != 0 || viewport.visible().empty()) {
+        parts.fate = PrimitiveFate::culled_outside;
+    } else {
+        parts.fate = PrimitiveFate::drawn;
+        parts.count = 1;
+        parts.parts[0].corners = PointSquare(centre, state.point_size).corners(centre);
+    }
+}
+
+void cull_and_clip_line(const Viewport& viewport, const RasterState& state, const PrimitiveCorners& line,
+                        PrimitiveParts& parts) {
+    const ScreenVertex &a = *line.vertices[0], &b = *line.vertices[1];
+    const std::uint32_t any = a.outside | b.outside, all = a.outside & b.outside;
+    PrimitivePart& part = parts.parts[0];
+    parts.count = 0;
+    parts.clipped = false;
+    parts.fate = PrimitiveFate::culled_outside;
+    if ((any & outside::not_finite) != 0) {
+        parts.fate = PrimitiveFate::culled_degenerate;
+        return;
+    }
+    if ((all & (outside::view_volume | outside::user_planes)) != 0) return;
+    if ((any & outside::must_clip) != 0) {
+        const ClippedPolygon ends = clip_line(viewport, line);
+        parts.clipped = true;
+        if (ends.count == 0) return;
+        for (std::size_t corner = 0; corner < 3; ++corner) {
+            const ClippedCorner& end = ends.corners[corner == 0 ? 0 : 1];
+            part.corners[corner] = screen_vertex(viewport, end);
+            part.weights[corner] = glm::vec3(end.weights);
+        }
+    } else {
+        part.corners = {a, b, b};
+    }
+    const ScreenVertex &from = part.corners[0], &to = part.corners[1];
+    const std::int32_t reach = RasterLine(from, to, state.line_width).width();
+    const PixelBounds& visible = viewport.visible();
+    const PixelBounds touched{visible.left - reach, visible.top - reach, visible.right + reach, visible.bottom + reach};
+    if (from.x == to.x && from.y == to.y) {
+        parts.fate = PrimitiveFate::culled_degenerate;
+    } else if (!visible.empty() && !off_screen(touched, from, to, to)) {
+        parts.fate = PrimitiveFate::drawn;
+        parts.count = 1;
     }
 }
 

@@ -1,4 +1,4 @@
-// From a primitive's three transformed vertices to the triangles that are rasterized: culling and clipping.
+// From a primitive's transformed vertices to the triangles, lines and points that are rasterized: culling and clipping.
 #pragma once
 
 #include "pipeline/fragment_stream.hpp"
@@ -37,9 +37,17 @@ struct PrimitiveParts {
         parts; ///< the first `count`, each of non-zero area and touching the viewport
 };
 
-/// Decides the fate of a primitive, in this order: a vertex that is not finite, or no area on the sub-pixel grid, makes
+/// Decides the fate of a triangle, in this order: a vertex that is not finite, or no area on the sub-pixel grid, makes
 /// it degenerate; all vertices beyond one plane of the view volume or of the user, or no part on the screen, put it
 /// outside; then facing. `parts` is overwritten; it is a parameter so that a loop over primitives need not clear it.
 void cull_and_clip(const Viewport& viewport, Culling culling, const PrimitiveCorners& triangle, PrimitiveParts& parts);
+/// The same of a point: the first corner. Its one part is the square around it, see PointSquare::corners. It is drawn
+/// where its centre lies inside, and then as a whole.
+void cull_point(const Viewport& viewport, const RasterState& state, const PrimitiveCorners& point,
+                PrimitiveParts& parts);
+/// The same of a line: the first two corners, which its one part repeats with the second one twice. One of no length on
+/// the sub-pixel grid is degenerate.
+void cull_and_clip_line(const Viewport& viewport, const RasterState& state, const PrimitiveCorners& line,
+                        PrimitiveParts& parts);
 
 } // namespace pipeline

@@ -53,10 +53,13 @@ void check_draw(const Resources& resources, const std::vector<Draw>& draws, std:
     require(draw.material < resources.materials.size(), "the number of an existing material");
     require(!draw.instances.empty(), "at least one instance");
     for (const glm::mat4& model : draw.instances) require(finite(model), "model matrices of finite numbers");
+    for (const VertexAttribute& attribute : resources.geometries[draw.geometry].attributes)
+        require(has_elements_for(resources, attribute, draw.instances.size()), "attributes for all its instances");
 }
 
 bool finite(const RasterState& state) {
-    bool good = std::isfinite(state.depth.bias_slope) && std::isfinite(state.depth.bias_constant);
+    bool good = std::isfinite(state.depth.bias_slope) && std::isfinite(state.depth.bias_constant) &&
+                std::isfinite(state.point_size) && std::isfinite(state.line_width);
     for (std::uint32_t i = 0; i < most_clip_distances; ++i)
         for (int axis = 0; axis < 4; ++axis) good &= std::isfinite(state.clip_plane[i][axis]);
     return good;
@@ -71,8 +74,7 @@ void check_states(const FrontEndOptions& options, std::size_t draws) {
                                               i, largest_viewport, -farthest_viewport, farthest_viewport,
                                               state.viewport->width, state.viewport->height, state.viewport->x,
                                               state.viewport->y));
-        if (!finite(state))
-            throw sim::InputError(fmt::format("state {}: expected a depth bias and planes of finite numbers", i));
+        if (!finite(state)) throw sim::InputError(fmt::format("state {}: expected finite numbers", i));
     }
     if (options.state_of_draw.empty()) return;
     if (options.state_of_draw.size() != draws)
@@ -109,12 +111,12 @@ class VertexRuns {
   public:
     explicit VertexRuns(std::vector<PlannedVertices>& runs) : runs_(runs) {}
 
-    std::uint32_t run_of(const Geometry& geometry, const glm::mat4& model, std::uint32_t state,
+    std::uint32_t run_of(const Geometry& geometry, const glm::mat4& model, std::uint32_t instance, std::uint32_t state,
                          const VertexRange& used) {
         const auto next = static_cast<std::uint32_t>(runs_.size());
-        std::uint32_t& last = last_.try_emplace(key_of(geometry, model, state), next).first->second;
+        std::uint32_t& last = last_.try_emplace(key_of(geometry, model, instance, state), next).first->second;
         if (last < next && join(runs_[last].used, used)) return last;
-        runs_.push_back({&geometry, &model, used, state, 0, 0});
+        runs_.push_back({&geometry, &model, used, instance, state, 0, 0});
         return last = next;
     }
 
@@ -123,11 +125,12 @@ class VertexRuns {
                            std::uint32_t, std::array<std::uint32_t, 16>>;
 
     // Bits of the matrix: what transforms alike in every bit.
-    static Key key_of(const Geometry& geometry, const glm::mat4& model, std::uint32_t state) {
+    static Key key_of(const Geometry& geometry, const glm::mat4& model, std::uint32_t instance, std::uint32_t state) {
         const VertexAttribute& position = *geometry.find(Semantic::position);
+        const bool advances = position.divisor != 0;
         return {position.buffer,
-                position.offset,
-                position.stride,
+                position.offset + (advances ? instance / position.divisor * std::uint64_t{position.stride} : 0),
+                advances ? 0 : position.stride,
                 position.type,
                 position.components,
                 position.normalized,
@@ -159,7 +162,7 @@ class Planner {
         auto known = used_.find(draw.geometry);
         if (known == used_.end()) known = used_.emplace(draw.geometry, used_vertices(plan_.resources, geometry)).first;
         for (std::uint32_t i = 0; i < draw.instances.size(); ++i)
-            add({.draw = number, .instance = i, .primitives = geometry.triangle_count()}, state, geometry,
+            add({.draw = number, .instance = i, .primitives = geometry.primitive_count()}, state, geometry,
                 known->second);
     }
 
@@ -219,8 +222,8 @@ class Planner {
         const Culling culling = state.state->culling == FaceCulling::by_material
                                     ? culling_of(plan_.options.both_faces || material.double_sided, model)
                                     : culling_of(*state.state);
-        plan_.instances.push_back(
-            {&geometry, &material, &model, &state, runs_.run_of(geometry, model, state.alike, some), culling});
+        plan_.instances.push_back({&geometry, &material, &model, &state, range.instance,
+                                   runs_.run_of(geometry, model, range.instance, state.alike, some), culling});
         if (primitives_ + range.primitives > std::numeric_limits<std::uint32_t>::max())
             throw sim::InputError(
                 fmt::format("draw {} \"{}\": expected at most 2^32 - 1 primitives in a pass", range.draw, draw.name));

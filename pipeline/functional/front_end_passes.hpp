@@ -22,6 +22,7 @@ struct PlannedVertices {
     const Geometry* geometry = nullptr; ///< one of those that read them
     const glm::mat4* model = nullptr;
     VertexRange used;
+    std::uint32_t instance = 0;       ///< one of those that read them
     std::uint32_t state = 0;          ///< of FrontEndPlan::states
     std::uint64_t first_vertex = 0;   ///< where they lie in FrontEndPlan::vertices
     std::uint64_t first_distance = 0; ///< ... in FrontEndPlan::distances, where planes of the user cut
@@ -33,6 +34,7 @@ struct PlannedInstance {
     const Material* material = nullptr;
     const glm::mat4* model = nullptr;
     const PlannedState* state = nullptr;
+    std::uint32_t instance = 0;
     std::uint32_t run = 0; ///< of FrontEndPlan::runs
     Culling culling = Culling::none;
 };
@@ -76,7 +78,22 @@ struct FrontEndPlan {
     FrontEndPlan(const Resources& resources_, const View& view_, const FrontEndOptions& options_)
         : resources(resources_), view(view_), options(options_), progress(options_) {}
 
-    /// The three transformed vertices of a primitive.
+    /// What becomes of a primitive of these vertices.
+    void cull_and_clip(const PlannedInstance& instance, const std::array<std::uint32_t, 3>& vertices_of_primitive,
+                       PrimitiveParts& parts) const {
+        const PlannedState& state = *instance.state;
+        const PrimitiveCorners whole = corners(instance, vertices_of_primitive);
+        switch (corners_of(instance.geometry->topology)) {
+        case 1:
+            return cull_point(state.viewport, *state.state, whole, parts);
+        case 2:
+            return cull_and_clip_line(state.viewport, *state.state, whole, parts);
+        default:
+            return pipeline::cull_and_clip(state.viewport, instance.culling, whole, parts);
+        }
+    }
+
+  private:
     PrimitiveCorners corners(const PlannedInstance& instance,
                              const std::array<std::uint32_t, 3>& vertices_of_primitive) const {
         const PlannedVertices& run = runs[instance.run];

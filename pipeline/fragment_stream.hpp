@@ -51,7 +51,7 @@ enum class PrimitiveFate : std::uint8_t { drawn, culled_facing, culled_outside, 
 /// One input primitive (of one instance of one draw), in submission order.
 struct Primitive {
     std::uint32_t first_triangle = 0;
-    std::uint8_t triangles = 0; ///< rasterized parts: 0 when culled, up to 7 when clipped
+    std::uint8_t triangles = 0; ///< rasterized parts: 0 when culled, several when clipped
     PrimitiveFate fate = PrimitiveFate::drawn;
     bool clipped = false;
 };

@@ -1,7 +1,7 @@
 // State of the fixed-function units that an application may change from draw to draw.
 //
-// Source: OpenGL 4.5 core, sections 13.5 (user clip distances), 13.6 (viewport), 14.6 (polygons) and 17.3 (per-fragment
-// operations). Not modelled: logic operations, dual-source blending, depth bounds.
+// Source: OpenGL 4.5 core, sections 13.5 (user clip distances), 13.6 (viewport), 14.4 to 14.6 (points, lines, polygons)
+// and 17.3 (per-fragment operations). Not modelled: logic operations, dual-source blending, depth bounds.
 #pragma once
 
 #include "sim/field.hpp"
@@ -160,6 +160,7 @@ enum class ProvokingVertex : std::uint8_t { first, last };
 
 inline constexpr std::uint32_t most_targets_of_pass = 8;
 inline constexpr std::uint32_t most_clip_distances = 8;
+inline constexpr float largest_point = 2048.0F; ///< pixels; points and lines are 1 pixel wide at least
 
 struct RasterState {
     std::array<BlendState, most_targets_of_pass> blend;
@@ -171,7 +172,10 @@ struct RasterState {
     FaceCulling culling = FaceCulling::by_material;
     bool front_is_clockwise = false; ///< on the screen, for culling by face and for stencil faces
     ProvokingVertex provoking = ProvokingVertex::last;
-    std::uint8_t clip_planes = 0;                            ///< bit i: plane i cuts
+    float point_size = 1.0F;      ///< pixels along a side of the square
+    bool point_sprites = false;   ///< texture coordinates run from 0 to 1 over a point, from the left and from the top
+    float line_width = 1.0F;      ///< pixels across the larger extent of the line, rounded
+    std::uint8_t clip_planes = 0; ///< bit i: plane i cuts
     std::array<glm::vec4, most_clip_distances> clip_plane{}; ///< in eye space; what has a negative product is cut
 
     bool operator==(const RasterState&) const = default;

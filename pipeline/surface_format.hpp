@@ -64,6 +64,11 @@ constexpr bool has_depth(SurfaceFormat format) { return info_of(format).kind == 
 constexpr bool has_stencil(SurfaceFormat format) { return info_of(format).stencil; }
 constexpr bool is_colour(SurfaceFormat format) { return !has_depth(format) && !has_stencil(format); }
 
+/// The smallest step of a depth format, by which a constant depth bias counts; 0: that of a 32-bit float at the depth.
+constexpr double depth_step(SurfaceFormat format) {
+    return format == SurfaceFormat::d32f ? 0.0 : format == SurfaceFormat::d16 ? 0x1p-16 : 0x1p-24;
+}
+
 inline constexpr std::uint32_t largest_texel = 16; ///< bytes
 
 } // namespace pipeline

@@ -18,23 +18,30 @@ namespace {
 constexpr const char* vertex_source = R"(#version 450 core
 layout(location = 0) in vec3 position;
 uniform mat4 clip_matrix;
+uniform vec4 planes[8];
+flat out uint vertex;
+out float gl_ClipDistance[8];
 
 // The sum is written out, and precise, so that no compiler forms other sums or fused operations.
 void main() {
     precise vec4 clip = ((clip_matrix[0] * position.x + clip_matrix[1] * position.y) + clip_matrix[2] * position.z)
                         + clip_matrix[3];
     gl_Position = clip;
+    for (int i = 0; i < 8; ++i) gl_ClipDistance[i] = dot(planes[i], vec4(position, 1.0));
+    vertex = uint(gl_VertexID);
 }
 )";
 
 constexpr const char* fragment_source = R"(#version 450 core
 layout(location = 0) out vec4 colour;
 layout(location = 1) out uint id;
+flat in uint vertex;
 uniform samplerBuffer colours;
-uniform bool counting;
 uniform int first_triangle;
+uniform int mode; // as MesaMode
 void main() {
-    colour = counting ? vec4(1.0) : texelFetch(colours, gl_PrimitiveID + first_triangle);
+    colour = mode == 2 ? texelFetch(colours, gl_PrimitiveID + first_triangle)
+                       : vec4(mode == 3 ? float(vertex) : 1.0);
     id = uint(gl_PrimitiveID) + 1u;
 }
 )";
@@ -207,9 +214,10 @@ class LlvmpipeRenderer : public MesaRenderer {
                        bool cull_back) override {
         const Targets targets(static_cast<GLsizei>(scene.width), static_cast<GLsizei>(scene.height));
         set_state(mode, cull_back);
-        load(scene, mode == MesaMode::blend, colours);
+        set_front_end_state(scene);
+        load(scene, mode, colours);
         for (std::size_t i = 0; i < queries_.size(); ++i) glBeginQuery(query_targets[i], queries_[i]);
-        glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(scene.indices.size()), GL_UNSIGNED_INT, nullptr);
+        glDrawElements(mode_of(scene.topology), static_cast<GLsizei>(scene.indices.size()), GL_UNSIGNED_INT, nullptr);
         for (const GLenum target : query_targets) glEndQuery(target);
         MesaPicture picture = read(scene);
         if (glGetError() != GL_NO_ERROR) throw std::runtime_error("the OpenGL reference reports an error");
@@ -220,7 +228,8 @@ class LlvmpipeRenderer : public MesaRenderer {
                             const std::vector<glm::vec4>& colours, const glm::vec4& background) override {
         const auto width = static_cast<GLsizei>(scene.width), height = static_cast<GLsizei>(scene.height);
         const Targets targets(width, height, GL_RGBA8, GL_DEPTH24_STENCIL8, background);
-        load(scene, true, colours);
+        set_front_end_state(scene);
+        load(scene, MesaMode::blend, colours);
         for (const MesaDraw& draw : draws) {
             set_raster_state(draw.state);
             glUniform1i(glGetUniformLocation(program_, "first_triangle"), static_cast<GLint>(draw.first_triangle));
@@ -251,7 +260,7 @@ class LlvmpipeRenderer : public MesaRenderer {
         set(GL_DEPTH_TEST, mode == MesaMode::nearest);
         glDepthFunc(GL_LESS);
         glDisable(GL_BLEND);
-        if (mode != MesaMode::nearest) glEnablei(GL_BLEND, 0);
+        if (mode == MesaMode::count || mode == MesaMode::blend) glEnablei(GL_BLEND, 0);
         if (mode == MesaMode::count) {
             glBlendFunci(0, GL_ONE, GL_ONE);
         } else {
@@ -262,13 +271,45 @@ class LlvmpipeRenderer : public MesaRenderer {
         glFrontFace(GL_CW); // OpenGL sees the picture upside down, see load()
     }
 
-    void load(const TriangleScene& scene, bool coloured, const std::vector<glm::vec4>& colours) {
+    static GLenum mode_of(pipeline::Topology topology) {
+        constexpr std::array<GLenum, 7> modes{GL_TRIANGLES, GL_TRIANGLE_STRIP, GL_TRIANGLE_FAN, GL_POINTS,
+                                              GL_LINES,     GL_LINE_STRIP,     GL_LINE_LOOP};
+        return modes[static_cast<std::size_t>(topology)];
+    }
+
+    static void set_front_end_state(const TriangleScene& scene) {
+        const pipeline::RasterState& state = scene.state;
+        const auto rectangle = [](const auto& apply, const pipeline::PixelRectangle& r) {
+            apply(r.x, r.y, static_cast<GLsizei>(r.width), static_cast<GLsizei>(r.height));
+        };
+        rectangle(glViewport, state.viewport.value_or(pipeline::PixelRectangle{0, 0, scene.width, scene.height}));
+        set(GL_SCISSOR_TEST, state.scissor.has_value());
+        if (state.scissor) rectangle(glScissor, *state.scissor);
+        if (state.culling != pipeline::FaceCulling::by_material) {
+            constexpr std::array<GLenum, 5> faces{GL_BACK, GL_BACK, GL_FRONT, GL_BACK, GL_FRONT_AND_BACK};
+            set(GL_CULL_FACE, state.culling != pipeline::FaceCulling::none);
+            glCullFace(faces[static_cast<std::size_t>(state.culling)]);
+            glFrontFace(state.front_is_clockwise ? GL_CCW : GL_CW);
+        }
+        set(GL_DEPTH_CLAMP, state.depth.clamp);
+        set(GL_POLYGON_OFFSET_FILL, true);
+        glPolygonOffset(state.depth.bias_slope, state.depth.bias_constant);
+        glProvokingVertex(state.provoking == pipeline::ProvokingVertex::first ? GL_FIRST_VERTEX_CONVENTION
+                                                                              : GL_LAST_VERTEX_CONVENTION);
+        for (GLenum i = 0; i < pipeline::most_clip_distances; ++i)
+            set(GL_CLIP_DISTANCE0 + i, (state.clip_planes >> i & 1U) != 0);
+        glPointSize(state.point_size);
+        glLineWidth(state.line_width);
+    }
+
+    void load(const TriangleScene& scene, MesaMode mode, const std::vector<glm::vec4>& colours) {
         // OpenGL's row 0 is the bottom row. With y negated it becomes the top row and the tie rule the top-left rule.
         glm::mat4 matrix = scene.matrix;
         for (int column = 0; column < 4; ++column) matrix[column][1] = -matrix[column][1];
         glUseProgram(program_);
         glUniformMatrix4fv(glGetUniformLocation(program_, "clip_matrix"), 1, GL_FALSE, &matrix[0][0]);
-        glUniform1i(glGetUniformLocation(program_, "counting"), coloured ? 0 : 1);
+        glUniform1i(glGetUniformLocation(program_, "mode"), static_cast<GLint>(mode));
+        glUniform4fv(glGetUniformLocation(program_, "planes"), 8, &scene.state.clip_plane[0][0]);
         glUniform1i(glGetUniformLocation(program_, "colours"), 0);
         glBindVertexArray(vertex_array_);
         upload(GL_ARRAY_BUFFER, buffers_[0], scene.positions);

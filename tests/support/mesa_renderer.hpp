@@ -3,6 +3,7 @@
 #pragma once
 
 #include "pipeline/raster_state.hpp"
+#include "pipeline/topology.hpp"
 
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -12,13 +13,15 @@
 
 namespace tests {
 
-/// Triangles under one matrix.
+/// Primitives under one matrix and one state. Blending, masks, depth test and stencil are MesaMode's.
 struct TriangleScene {
     std::string name;
     std::vector<glm::vec3> positions;
     std::vector<std::uint32_t> indices; ///< three per triangle
-    glm::mat4 matrix{1.0F};             ///< model space to clip space, y up
+    glm::mat4 matrix{1.0F};             ///< model space, which is eye space, to clip space, y up
     std::uint32_t width = 512, height = 512;
+    pipeline::Topology topology = pipeline::Topology::triangles;
+    pipeline::RasterState state{}; ///< culling by_material: none
 };
 
 /// What is done with the fragments.
@@ -26,12 +29,13 @@ enum class MesaMode {
     count,   ///< no depth test; colour.r counts the fragments of each pixel, id is the last one's
     nearest, ///< depth test LESS with writes; id is the visible triangle's
     blend,   ///< no depth test; source-over blending of the triangles' colours in order
+    flat     ///< no depth test, no blending; colour.r is the index of the last fragment's provoking vertex
 };
 
 /// Row 0 is the top row.
 struct MesaPicture {
     std::vector<glm::vec4> colour;
-    std::vector<std::uint32_t> id; ///< 1 + number of the triangle, 0 where there is none
+    std::vector<std::uint32_t> id; ///< 1 + number of the primitive, 0 where there is none
     std::vector<float> depth;      ///< window depth
     std::uint64_t samples_passed = 0;
     std::uint64_t fs_invocations = 0; ///< 16 for each 4x4 block that a triangle touches

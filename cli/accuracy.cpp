@@ -9,6 +9,8 @@
 #include "reports/images.hpp"
 #include "reports/result.hpp"
 
+#include <nlohmann/json.hpp>
+
 namespace cli {
 
 namespace {

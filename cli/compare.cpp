@@ -14,6 +14,7 @@
 #include "sim/counted.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace cli {
 

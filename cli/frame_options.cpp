@@ -1,5 +1,7 @@
 #include "cli/frame_options.hpp"
 
+#include "cli/help_texts.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -19,11 +21,7 @@ void add_size(CLI::App& command, std::string& size) {
 }
 
 void add_camera(CLI::App& command, std::string& camera) {
-    command
-        .add_option(
-            "--camera", camera,
-            "auto, the number of a camera of the scene, or ex,ey,ez,tx,ty,tz,fovy (eye, target, vertical degrees)")
-        ->type_name("CAMERA");
+    command.add_option("--camera", camera, camera_text)->type_name("CAMERA");
 }
 
 void add_threads(CLI::App& command, std::string& threads) {

@@ -11,6 +11,7 @@
 #include "traces/gltf_export.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace cli {
 

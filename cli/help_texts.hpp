@@ -1,7 +1,11 @@
-// Examples that --help ends with.
+// Texts of --help that are longer than a line: of an option that several subcommands have, and the examples at the end.
 #pragma once
 
 namespace cli {
+
+inline constexpr const char* camera_text =
+    "auto, the number of a camera of the scene, ex,ey,ez,tx,ty,tz,fovy (eye, target, vertical degrees), or the 32 "
+    "numbers that a result.json has as scene.view: view and projection matrix, column by column";
 
 inline constexpr const char* general_help = R"(Examples:
   ropsim compare scene.glb --out report        the usual designs; then open report/report.html

@@ -6,6 +6,7 @@
 #include "sim/check.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace cli {
 

@@ -6,7 +6,7 @@
 #include "reports/csv.hpp"
 #include "reports/geometry/validation.hpp"
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>

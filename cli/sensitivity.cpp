@@ -7,6 +7,8 @@
 #include "cli/progress_line.hpp"
 #include "reports/result.hpp"
 
+#include <nlohmann/json.hpp>
+
 namespace cli {
 
 namespace {

@@ -8,6 +8,7 @@
 #include "sim/counted.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace cli {
 
@@ -34,6 +35,7 @@ void study(const StudyCommand& command) {
         written = "\n" + write_tables(command.directory, "study.json", document, {reports::study_table(result)},
                                       reports::study_page(result));
     std::vector<std::string> notes;
+    if (const std::string remark = reports::nothing_drawn(result); !remark.empty()) notes.push_back(remark);
     if (result.found != 0)
         notes.push_back(fmt::format("{} of {} had been finished before and {} not computed again (--no-resume does)",
                                     result.found, sim::counted(points_of(result), "point"),

@@ -11,6 +11,7 @@
 #include "sim/check.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace cli {
 

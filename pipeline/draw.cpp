@@ -64,9 +64,9 @@ const VertexAttribute* Geometry::find(Semantic semantic) const {
     return nullptr;
 }
 
-std::uint32_t Geometry::triangle_count() const {
-    if (primitive_restart) return runs.empty() ? 0 : runs.back().first_triangle;
-    return triangles_of(topology, index_count);
+std::uint32_t Geometry::primitive_count() const {
+    if (primitive_restart) return runs.empty() ? 0 : runs.back().first_primitive;
+    return primitives_of(topology, index_count);
 }
 
 void Resources::place() {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "pipeline/sample_planes.hpp"
+#include "pipeline/topology.hpp"
 #include "sim/field.hpp"
 
 #include <array>
@@ -87,29 +88,10 @@ struct VertexAttribute {
     std::uint32_t buffer = 0;
     std::uint64_t offset = 0;
     std::uint32_t stride = 12; ///< bytes; tightly packed data states its real element size here
+    /// 0: element i is vertex i's. Else all vertices of instance i have element i / divisor.
+    std::uint32_t divisor = 0;
 
     std::uint32_t bytes() const { return element_bytes(type, components); } ///< of one element
-};
-
-enum class Topology : std::uint8_t { triangles, triangle_strip, triangle_fan };
-enum class IndexType : std::uint8_t { none, u8, u16, u32 };
-constexpr std::uint32_t bytes_of(IndexType type) {
-    constexpr std::array<std::uint32_t, 4> sizes{0, 1, 2, 4};
-    return sizes[static_cast<std::size_t>(type)];
-}
-
-/// The value that ends a primitive where restart is on: the largest one of the type (OpenGL 4.5, section 10.3.6).
-constexpr std::uint32_t restart_index(IndexType type) {
-    constexpr std::array<std::uint32_t, 4> values{0, 0xFF, 0xFFFF, 0xFFFFFFFF};
-    return values[static_cast<std::size_t>(type)];
-}
-
-/// Indices between two restarts that make at least one triangle.
-struct IndexRun {
-    std::uint32_t first_index = 0;
-    std::uint32_t first_triangle = 0; ///< triangles of the runs before
-
-    bool operator==(const IndexRun&) const = default;
 };
 
 /// The vertex input of a draw.
@@ -122,22 +104,19 @@ struct Geometry {
     std::uint32_t index_buffer = 0;
     std::uint64_t index_offset = 0;
     std::uint32_t index_count = 0; ///< number of indices, or of vertices when not indexed
-    /// An index of restart_index() ends a strip, a fan or a begun triangle of a list; it counts in index_count.
+    /// An index of restart_index() ends a strip, a fan, a loop or a begun primitive of a list; it counts in
+    /// index_count.
     bool primitive_restart = false;
-    /// With primitive restart: where triangles begin, and behind them {index_count, all triangles}. Filled by
+    /// With primitive restart: where primitives begin, and behind them {index_count, all primitives}. Filled by
     /// Resources::find_runs().
     std::vector<IndexRun> runs;
 
     const VertexAttribute* find(Semantic semantic) const;
-    /// Triangles the topology makes of the indices, degenerate ones included.
-    std::uint32_t triangle_count() const;
+    /// Primitives the topology makes of the indices, degenerate ones included.
+    std::uint32_t primitive_count() const;
+    /// The same where they are triangles, else 0.
+    std::uint32_t triangle_count() const { return corners_of(topology) == 3 ? primitive_count() : 0; }
 };
-
-/// Triangles of `count` indices without a restart.
-constexpr std::uint32_t triangles_of(Topology topology, std::uint32_t count) {
-    if (topology == Topology::triangles) return count / 3;
-    return count < 3 ? 0 : count - 2;
-}
 
 enum class Wrap : std::uint8_t { repeat, clamp, mirror };
 enum class Filter : std::uint8_t {
@@ -183,6 +162,7 @@ struct Material {
     bool double_sided = false;
     float transmission = 0.0F; ///< > 0: drawn as transparent
     bool unlit = false;
+    bool flat = false; ///< colour and normal are those of the provoking vertex
 
     bool transparent() const { return alpha_mode == AlphaMode::blend || transmission > 0.0F; }
 };

@@ -42,6 +42,7 @@ struct Triangle {
     QuadId first_quad = 0;
     std::uint32_t quads = 0; ///< of all samples; may be 0: covers no pixel centre, or no sample
     std::uint32_t tiles = 0; ///< 8x8 tiles the rasterizer visits, at least 1
+    bool front = true;       ///< its corners run counter-clockwise on the screen; see RasterState::front_is_clockwise
 };
 
 /// What became of an input primitive.
@@ -50,7 +51,7 @@ enum class PrimitiveFate : std::uint8_t { drawn, culled_facing, culled_outside, 
 /// One input primitive (of one instance of one draw), in submission order.
 struct Primitive {
     std::uint32_t first_triangle = 0;
-    std::uint8_t triangles = 0; ///< rasterized parts: 0 when culled, up to 7 when clipped
+    std::uint8_t triangles = 0; ///< rasterized parts: 0 when culled, several when clipped
     PrimitiveFate fate = PrimitiveFate::drawn;
     bool clipped = false;
 };

@@ -6,17 +6,17 @@
 
 #include "pipeline/draw.hpp"
 #include "pipeline/output/kbuffer.hpp"
+#include "pipeline/raster_state.hpp"
 #include "pipeline/resolve.hpp"
+#include "pipeline/surface_format.hpp"
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace pipeline {
-
-enum class DepthFormat : std::uint8_t { d16, d24, d32f };
-enum class ColourFormat : std::uint8_t { rgba8, rgba16f, rgba32f };
 
 /// How the vertices of a frame come to the GPU.
 enum class Submission : std::uint8_t {
@@ -32,20 +32,11 @@ enum class PassKind : std::uint8_t {
     resolve, ///< reads the finished surfaces and writes the picture; timed where Frame::resolve says how
 };
 
-/// `over`: rgb = source * a + target * (1 - a), alpha = a + target * (1 - a), with a = source alpha, colours not
-/// premultiplied. `add` sums and saturates (RGBA8). `least` and `greatest` act per channel.
-enum class BlendMode : std::uint8_t { replace, over, add, least, greatest };
-
 /// What the shader makes of a fragment, where a pass asks for its colour.
 enum class FragmentColour : std::uint8_t {
     lit,   ///< base colour x vertex colour x texture x light
     flat,  ///< the base colour of its material: nothing is interpolated, lit or discarded
     cosine ///< red, green and blue are |cos| of the angle between the surface normal and the direction to the eye
-};
-
-struct DepthState {
-    bool test = false; ///< LESS against the depth surface; a strict test keeps the first of equal depths
-    bool write = false;
 };
 
 /// Triangles of one instance of a draw that are handed over with a draw call of their own: a run of the list that
@@ -65,14 +56,32 @@ struct Pass {
     std::vector<std::string> writes;  ///< surfaces
     std::vector<std::uint32_t> draws; ///< indices into Frame::draws; draw passes only
     std::vector<DrawPart> parts;      ///< of those draws, in this order; empty: each draw whole
-    DepthState depth;
-    bool colour = false;                  ///< writes the shaded colour to the "colour" surface
-    std::uint32_t colour_targets = 1;     ///< written at once, all of the colour format; the first holds the colour
-    BlendMode blend = BlendMode::replace; ///< how; but for replace, Frame::opacity scales the alpha
-    bool both_faces = false;              ///< draws triangles that face away, too
-    bool kbuffer = false;                 ///< fragments go through the frame's modify program
+    std::vector<RasterState> states = std::vector<RasterState>(1); ///< that its draws have
+    std::vector<std::uint32_t> state_of_draw; ///< index into `states`, one for each of `draws`; empty: all the first
+    bool colour = false;              ///< writes the shaded colour to the "colour" surface, blended where a state says
+    std::uint32_t colour_targets = 1; ///< written at once, all of the colour format; the first holds the colour
+    bool both_faces = false;          ///< draws triangles that face away, too
+    bool kbuffer = false;             ///< fragments go through the frame's modify program
     /// Attributes that the vertex shader reads beside what shading needs: bits as in mask_of(Semantic).
     std::uint32_t attributes = 0;
+
+    bool tests_depth() const {
+        return any_state([](const RasterState& state) { return state.depth.test; });
+    }
+    bool writes_depth() const {
+        return any_state([](const RasterState& state) { return state.depth.write; });
+    }
+    bool tests_stencil() const {
+        return any_state([](const RasterState& state) { return state.stencil.test; });
+    }
+    /// The "depth" surface, which holds the stencil as well.
+    bool uses_depth() const { return tests_depth() || writes_depth() || tests_stencil(); }
+
+  private:
+    template <class Predicate>
+    bool any_state(Predicate predicate) const {
+        return std::any_of(states.begin(), states.end(), predicate);
+    }
 };
 
 /// What the passes of a frame use. Units, attributes and surfaces that nothing here asks for are not built, fetched or
@@ -115,10 +124,10 @@ struct Frame {
     std::vector<LeftOut> left_out;                ///< by the pass graph: culled passes, unread attributes
     std::shared_ptr<const ModifyProgram> program; ///< null when no pass has a k-buffer
     std::shared_ptr<const Resolve> resolve;       ///< null: the layers are composited front to back
-    DepthFormat depth_format = DepthFormat::d24;
-    ColourFormat colour_format = ColourFormat::rgba8;
+    SurfaceFormat depth_format = SurfaceFormat::d24;
+    SurfaceFormat colour_format = SurfaceFormat::rgba8;
     glm::vec4 background{1.0F};
-    float opacity = 0.5F; ///< uniform alpha of composited layers (A11)
+    float opacity = 0.5F; ///< uniform alpha of composited layers (A11); scales that of every blended write, too
 
     const View& view_of_kbuffer() const { return kbuffer_view ? *kbuffer_view : view; }
     const View& view_of(const Pass& pass) const { return pass.kbuffer ? view_of_kbuffer() : view; }

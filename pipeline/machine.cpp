@@ -1,14 +1,16 @@
 #include "pipeline/machine.hpp"
 
-#include "pipeline/functional/colour_format.hpp"
 #include "pipeline/functional/composite.hpp"
+#include "pipeline/functional/fragment_operations.hpp"
 #include "pipeline/functional/screen_stream.hpp"
 #include "pipeline/functional/shader.hpp"
 #include "pipeline/machine_units.hpp"
 #include "pipeline/on_chip_area.hpp"
+#include "sim/described_json.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 namespace pipeline {
@@ -208,12 +210,13 @@ void Machine::clear(const Pass& pass) {
     std::uint64_t bytes = 0;
     for (const std::string& surface : pass.writes) {
         if (surface == "depth") {
-            surfaces.depth.assign(places, farthest_depth(frame_->depth_format));
-            bytes += clear_surface(surfaces.depth_clear, fixed, pixels, depth_bytes(frame_->depth_format));
+            surfaces.depth.assign(has_depth(frame_->depth_format) ? places : 0, farthest_depth(frame_->depth_format));
+            surfaces.stencil.assign(has_stencil(frame_->depth_format) ? places : 0, 0);
+            bytes += clear_surface(surfaces.depth_clear, fixed, pixels, bytes_of(frame_->depth_format));
         }
         if (surface == "colour") {
             surfaces.colour.assign(places, through_format(frame_->colour_format, frame_->background));
-            bytes += clear_surface(surfaces.colour_clear, fixed, pixels, colour_bytes(frame_->colour_format));
+            bytes += clear_surface(surfaces.colour_clear, fixed, pixels, bytes_of(frame_->colour_format));
         }
         // Peeling clears its layers one by one instead. Tile memory is cleared on chip, and stores whole sectors.
         if (surface != "kbuffer") continue;
@@ -255,15 +258,18 @@ void Machine::draw(const Pass& pass, const FragmentStream& stream) {
     context.layout = layout_of(frame_->view_of(pass));
     context.multisampled = multisampled(*frame_, pass, plan_);
     fixed.winner.resize(places, ~QuadId{0});
-    if (pass.depth.test || pass.depth.write) fixed.depth.resize(places, farthest_depth(frame_->depth_format));
+    if (pass.uses_depth()) {
+        fixed.depth.resize(has_depth(frame_->depth_format) ? places : 0, farthest_depth(frame_->depth_format));
+        fixed.stencil.resize(has_stencil(frame_->depth_format) ? places : 0);
+    }
     if (pass.colour) fixed.colour.resize(places, through_format(frame_->colour_format, frame_->background));
-    context.depth = pass.depth;
-    context.blend = pass.blend;
+    context.states = context.read_only_states = DrawStates(pass, frame_->draws.size());
+    context.colour_format = frame_->colour_format;
     context.colour_write = pass.colour;
-    context.colour_bytes = colour_bytes(frame_->colour_format) * pass.colour_targets;
+    context.colour_bytes = bytes_of(frame_->colour_format) * pass.colour_targets;
     context.depth_format = frame_->depth_format;
     context.read_only_format = frame_->depth_format;
-    context.depth_bytes = depth_bytes(frame_->depth_format);
+    context.depth_bytes = bytes_of(frame_->depth_format);
     context.behind = nullptr;
     if (!pass.kbuffer) {
         context.end = FragmentEnd::depth_colour;
@@ -273,10 +279,10 @@ void Machine::draw(const Pass& pass, const FragmentStream& stream) {
         end();
         return;
     }
-    CHECK_MSG(!pass.depth.write, "a k-buffer pass does not write the depth surface");
+    CHECK_MSG(!pass.writes_depth() && !pass.tests_stencil(), "a k-buffer pass neither writes depth nor tests stencil");
     if (plan_.site == UpdateSite::passes) return draw_layers(pass, stream);
     if (plan_.site == UpdateSite::lists) return draw_lists(pass, stream);
-    context.read_only_depth = pass.depth.test ? &fixed.depth : nullptr;
+    context.read_only_depth = pass.tests_depth() ? &fixed.depth : nullptr;
     context.end = plan_.site == UpdateSite::blender ? FragmentEnd::kbuffer_blend : FragmentEnd::kbuffer_store;
     begin(pass.name);
     if (context.end == FragmentEnd::kbuffer_store && !plan_.shader.tile_memory)
@@ -297,8 +303,8 @@ void Machine::resolve() {
     if (!passes.empty() && heads_or_entries.left() + fixed.depth_clear.left() + fixed.colour_clear.left() != 0) {
         begin("resolve of cleared sectors");
         if (frame_->program != nullptr) resolve_cleared(heads_or_entries, kbuffer_bytes());
-        resolve_cleared(fixed.depth_clear, depth_bytes(frame_->depth_format));
-        resolve_cleared(fixed.colour_clear, colour_bytes(frame_->colour_format));
+        resolve_cleared(fixed.depth_clear, bytes_of(frame_->depth_format));
+        resolve_cleared(fixed.colour_clear, bytes_of(frame_->colour_format));
         end();
     }
     for (const ScreenPass& pass : passes) screen(pass, *frame_->screen_draw);
@@ -311,9 +317,8 @@ void Machine::screen(const ScreenPass& pass, std::uint32_t triangle) {
     units_->fixed.winner.assign(std::size_t{pass.width} * pass.height, ~QuadId{0});
     context.layout = layout_of(pass.width, pass.height);
     context.end = FragmentEnd::depth_colour;
-    context.depth = {};
+    context.states = DrawStates();
     context.read_only_depth = nullptr;
-    context.blend = BlendMode::replace;
     context.colour_write = true; // its values are the workload's
     context.colour_bytes = pass.written_bytes;
     context.multisampled = false;

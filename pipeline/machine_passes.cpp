@@ -24,14 +24,16 @@ void Machine::draw_layers(const Pass& pass, const FragmentStream& stream) {
     const std::uint64_t drawn = frame_->view_of_kbuffer().samples_drawn();
     const bool both_ends = plan_.passes.capture == PassCapture::nearest_farthest;
     units_->drawn = std::exchange(units_->fixed, {});
-    context.read_only_depth = pass.depth.test ? &units_->drawn.depth : nullptr;
+    context.read_only_depth = pass.tests_depth() ? &units_->drawn.depth : nullptr;
     context.end = FragmentEnd::depth_colour;
-    context.depth = {true, true};
-    context.blend = BlendMode::replace;
+    RasterState nearest;
+    nearest.depth.test = nearest.depth.write = true;
+    context.states = DrawStates(nearest);
     context.depth_format = plan_.passes.depth_format;
     // From both ends: two depths, two colours, both blended with MAX.
-    context.depth_bytes = both_ends ? 8 : depth_bytes(context.depth_format);
+    context.depth_bytes = both_ends ? 8 : bytes_of(context.depth_format);
     context.colour_write = program.needs_colour();
+    context.colour_format = SurfaceFormat::rgba32f;
     context.colour_bytes = both_ends ? 32 : 16; // RGBA32F, as the k-buffer's entries
     context.farthest = both_ends;
     clear_layers();
@@ -118,7 +120,7 @@ void Machine::draw_lists(const Pass& pass, const FragmentStream& stream) {
     PassContext& context = units_->pass;
     const ListsSite& site = plan_.lists;
     const std::uint64_t pixels = frame_->view_of_kbuffer().samples_drawn();
-    context.read_only_depth = pass.depth.test ? &units_->fixed.depth : nullptr;
+    context.read_only_depth = pass.tests_depth() ? &units_->fixed.depth : nullptr;
     context.end = FragmentEnd::kbuffer_list;
     for (std::uint32_t i = 0; i < site.passes; ++i) {
         begin(site.passes == 1 ? pass.name : fmt::format("{} pass {}", pass.name, i));

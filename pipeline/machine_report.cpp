@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <bit>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace pipeline {
 
@@ -134,6 +135,7 @@ void Machine::collect_pixels(RunResult& result, const ReferenceImage& reference)
     }
     if (frame_->needs.colour_surface) result.colour = colour_surface();
     if (frame_->needs.depth) result.depth = depth_surface();
+    if (frame_->needs.depth) result.stencil = units_->fixed.stencil;
     const std::vector<std::uint8_t> fixed = wrong_fixed_places(result, reference);
     wrong.resize(frame_->view_of_kbuffer().places());
     if (frame_->kbuffer_view) // surfaces of other pixels, which nothing explains
@@ -154,6 +156,8 @@ std::vector<std::uint8_t> Machine::wrong_fixed_places(const RunResult& result, c
     }
     for (std::size_t place = 0; place < result.depth.size() && place < reference.depth.size(); ++place)
         if (result.depth[place] != reference.depth[place]) wrong[place] = 1;
+    for (std::size_t place = 0; place < result.stencil.size() && place < reference.stencil.size(); ++place)
+        if (result.stencil[place] != reference.stencil[place]) wrong[place] = 1;
     return wrong;
 }
 
@@ -290,7 +294,7 @@ void Machine::collect_counters(RunResult& result) const {
     const Units& units = *units_;
     const MachineStats stats = units.stats();
     result.fragments = stats.rop.fragments;
-    Json& stages = result.stages;
+    Json& stages = *result.stages;
     stages = units.front.report();
     stages["rasterizer"] = one_unit_report(*units.rasterizer);
     if (units.early_depth) stages["early_depth_test"] = one_unit_report(*units.early_depth);

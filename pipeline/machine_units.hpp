@@ -8,7 +8,7 @@
 #include "pipeline/memory/memory_system.hpp"
 #include "pipeline/output/crossbar.hpp"
 #include "pipeline/output/rop.hpp"
-#include "sim/described_json.hpp"
+#include "sim/described.hpp"
 
 #include <deque>
 #include <optional>

@@ -1,7 +1,7 @@
 #include "pipeline/on_chip_area.hpp"
 
-#include "pipeline/functional/colour_format.hpp"
-#include "pipeline/functional/depth_format.hpp"
+#include "pipeline/functional/fragment_operations.hpp"
+#include "pipeline/functional/surface_texel.hpp"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -86,7 +86,7 @@ TileCacheBytes sector_bytes(const Frame& frame, const KBufferPlan& plan) {
     const auto line = [](std::uint32_t pixel_bytes) -> std::uint64_t {
         return pixel_bytes == 0 ? 0 : SectorShape{pixel_bytes}.line_bytes();
     };
-    return {line(depth_bytes(frame.depth_format)), line(colour_bytes(frame.colour_format)), line(entries)};
+    return {line(bytes_of(frame.depth_format)), line(bytes_of(frame.colour_format)), line(entries)};
 }
 
 GpuShape shape_of(const GpuParams& gpu) { return {gpu.reorder_quads(), gpu.rop.units, gpu.rop.groups()}; }

@@ -1,6 +1,6 @@
 #include "pipeline/peel_resolution.hpp"
 
-#include "pipeline/functional/depth_format.hpp"
+#include "pipeline/functional/surface_texel.hpp"
 
 #include <algorithm>
 

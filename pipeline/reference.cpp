@@ -1,10 +1,11 @@
 #include "pipeline/reference.hpp"
 
-#include "pipeline/functional/colour_format.hpp"
+#include "pipeline/draw_states.hpp"
 #include "pipeline/functional/composite.hpp"
-#include "pipeline/functional/depth_format.hpp"
+#include "pipeline/functional/fragment_operations.hpp"
 #include "pipeline/functional/parallel.hpp"
 #include "pipeline/functional/pixel_lists.hpp"
+#include "pipeline/functional/surface_texel.hpp"
 #include "sim/check.hpp"
 
 #include <algorithm>
@@ -19,9 +20,10 @@ namespace {
 struct Surfaces {
     std::vector<float> kbuffer;
     std::vector<DepthCode> depth;
+    std::vector<std::uint8_t> stencil;
     std::vector<float> colour;
 
-    std::vector<float> depth_values(DepthFormat format) const {
+    std::vector<float> depth_values(SurfaceFormat format) const {
         std::vector<float> values(depth.size());
         for (std::size_t i = 0; i < values.size(); ++i) values[i] = depth_value(format, depth[i]);
         return values;
@@ -42,16 +44,18 @@ struct PendingStore {
 /// Runs the fragments of one draw pass, pixel by pixel.
 class PassRunner {
   public:
-    PassRunner(const Frame& frame, const Pass& pass, const FragmentStream& stream, QuadId delay, Surfaces& surfaces,
-               ReferenceImage& image, Counts& counts)
+    PassRunner(const Frame& frame, const Pass& pass, const DrawStates& states, const FragmentStream& stream,
+               QuadId delay, Surfaces& surfaces, ReferenceImage& image, Counts& counts)
         : frame_(frame),
           pass_(pass),
+          states_(states),
           stream_(stream),
           delay_(delay),
           surfaces_(surfaces),
           image_(image),
           counts_(counts),
           floats_(pass.kbuffer ? frame.program->floats_per_pixel() : 0),
+          uses_depth_(pass.uses_depth()),
           counts_complexity_(pass.kbuffer || frame.program == nullptr) {}
 
     /// Runs the quads of one pixel in raster order.
@@ -73,33 +77,31 @@ class PassRunner {
 
   private:
     void run_fragment(QuadId quad) {
-        const float depth = stream_.depths[quad][lane_];
-        if (!depth_test(depth)) return;
+        const RasterState& state = states_.of(stream_, quad);
+        if (!tests_pass(state, quad)) return;
         if (counts_complexity_) ++image_.depth_complexity[pixel_];
-        if (pass_.colour) write_colour(quad);
+        if (pass_.colour) store_colour(state, quad);
         if (pass_.kbuffer) insert(quad);
     }
 
-    /// True when the fragment passes. A failed fragment still counts in the depth complexity of frames without
-    /// k-buffer.
-    bool depth_test(float depth) {
-        if (!pass_.depth.test && !pass_.depth.write) return true;
-        DepthCode& stored = surfaces_.depth[pixel_];
-        const DepthCode incoming = depth_code(frame_.depth_format, depth);
-        if (pass_.depth.test && !depth_less(incoming, stored)) {
-            if (!pass_.kbuffer && counts_complexity_) ++image_.depth_complexity[pixel_];
-            return false;
-        }
-        if (pass_.depth.write) stored = incoming;
-        return true;
+    /// A failed fragment still counts in the depth complexity of frames without k-buffer.
+    bool tests_pass(const RasterState& state, QuadId quad) {
+        if (!uses_depth_) return true;
+        const DepthCode incoming = depth_code(frame_.depth_format, stream_.depths[quad][lane_]);
+        const FragmentTest test = test_fragment(state, shows_front(state, stream_, quad), incoming,
+                                                surfaces_.depth.empty() ? nullptr : &surfaces_.depth[pixel_],
+                                                surfaces_.stencil.empty() ? nullptr : &surfaces_.stencil[pixel_]);
+        if (!test.passed() && !pass_.kbuffer && counts_complexity_) ++image_.depth_complexity[pixel_];
+        return test.passed();
     }
 
-    void write_colour(QuadId quad) {
+    void store_colour(const RasterState& state, QuadId quad) {
+        if (state.write_mask[0] == 0) return;
         float* stored = surfaces_.colour.data() + pixel_ * 4;
         glm::vec4 source = stream_.colours[quad][lane_];
-        if (pass_.blend != BlendMode::replace) source.a *= frame_.opacity;
-        const glm::vec4 colour =
-            write_through(frame_.colour_format, pass_.blend, source, {stored[0], stored[1], stored[2], stored[3]});
+        if (state.blend[0].enabled) source.a *= frame_.opacity;
+        const glm::vec4 colour = write_colour(frame_.colour_format, state.blend[0], state.write_mask[0], source,
+                                              {stored[0], stored[1], stored[2], stored[3]});
         for (int i = 0; i < 4; ++i) stored[i] = colour[i];
     }
 
@@ -138,12 +140,14 @@ class PassRunner {
 
     const Frame& frame_;
     const Pass& pass_;
+    const DrawStates& states_;
     const FragmentStream& stream_;
     QuadId delay_;
     Surfaces& surfaces_;
     ReferenceImage& image_;
     Counts& counts_;
     std::size_t floats_;
+    bool uses_depth_;
     bool counts_complexity_;
 
     std::size_t pixel_ = 0;
@@ -170,8 +174,10 @@ class Reference {
     void allocate() {
         const auto any = [&](auto member) { return std::any_of(frame_.passes.begin(), frame_.passes.end(), member); };
         image_.depth_complexity.resize(frame_.view_of_kbuffer().places());
-        if (any([](const Pass& pass) { return pass.depth.test || pass.depth.write; }))
-            surfaces_.depth.resize(frame_.view.places());
+        if (any([](const Pass& pass) { return pass.uses_depth(); })) {
+            surfaces_.depth.resize(has_depth(frame_.depth_format) ? frame_.view.places() : 0);
+            surfaces_.stencil.resize(has_stencil(frame_.depth_format) ? frame_.view.places() : 0);
+        }
         if (any([](const Pass& pass) { return pass.colour; })) surfaces_.colour.resize(frame_.view.places() * 4);
         if (any([](const Pass& pass) { return pass.kbuffer; })) {
             CHECK(frame_.program != nullptr);
@@ -183,6 +189,7 @@ class Reference {
     void clear(std::string_view surface) {
         if (surface == "depth") {
             std::fill(surfaces_.depth.begin(), surfaces_.depth.end(), farthest_depth(frame_.depth_format));
+            std::fill(surfaces_.stencil.begin(), surfaces_.stencil.end(), std::uint8_t{0});
         } else if (surface == "colour") {
             const glm::vec4 colour = through_format(frame_.colour_format, frame_.background);
             for (std::size_t i = 0; i < surfaces_.colour.size(); ++i)
@@ -216,11 +223,13 @@ class Reference {
         const View& view = frame_.view_of(pass);
         CHECK(stream.width == view.width && stream.height == view.height && stream.samples == view.samples);
         // A k-buffer that a light sees is not tested against what the eye sees.
-        CHECK(!(pass.kbuffer && frame_.kbuffer_view) || !(pass.depth.test || pass.depth.write || pass.colour));
+        CHECK(!(pass.kbuffer && frame_.kbuffer_view) || !(pass.uses_depth() || pass.colour));
         CHECK(!pass.colour || stream.colours.size() == stream.quads.size());
+        CHECK_MSG(!pass.kbuffer || !pass.tests_stencil(), "a k-buffer pass does not test stencil");
+        const DrawStates states(pass, frame_.draws.size());
         const TileLists tiles(stream);
         parallel_for(threads_, tiles.count(), [&](std::size_t tile) {
-            PassRunner runner(frame_, pass, stream, delay_, surfaces_, image_, counts_);
+            PassRunner runner(frame_, pass, states, stream, delay_, surfaces_, image_, counts_);
             tiles.for_each_pixel(tile, [&](std::uint32_t x, std::uint32_t y, std::span<const QuadId> quads) {
                 runner.run_pixel(x, y, quads);
             });
@@ -233,6 +242,7 @@ class Reference {
         image_.kbuffer = std::move(surfaces_.kbuffer);
         image_.colour = std::move(surfaces_.colour);
         image_.depth = surfaces_.depth_values(frame_.depth_format);
+        image_.stencil = std::move(surfaces_.stencil);
         image_.accepted_insertions = counts_.accepted;
         image_.missed_reads = counts_.missed_reads;
         image_.missed_pixels = counts_.missed_pixels;

@@ -1,8 +1,8 @@
 // SEQ: a frame executed in submission order, one fragment at a time, without time (specification 004, section 7). What
 // every design is compared with, made of the same functional routines.
 //
-// Modelled: depth test and write in the surface's own format, colour writes, k-buffer programs, clears, the resolve
-// pass. Not modelled: time, and whatever a design does to protect pixels.
+// Modelled: stencil and depth test and write in the surface's own format, blended and masked colour writes, k-buffer
+// programs, clears, the resolve pass. Not modelled: time, and whatever a design does to protect pixels.
 #pragma once
 
 #include "pipeline/fragment_stream.hpp"
@@ -16,10 +16,11 @@ namespace pipeline {
 /// Surfaces after a frame; row 0 first, planes of samples one below the other (sample_planes.hpp). A surface that no
 /// pass writes is empty.
 struct ReferenceImage {
-    std::vector<float> kbuffer; ///< program->floats_per_pixel() floats per place of its view
-    std::vector<float> depth;   ///< window depth per place, as the depth format holds it
-    std::vector<float> colour;  ///< RGBA per place of the "colour" surface, as the colour format holds it
-    std::vector<float> picture; ///< RGBA per pixel that the resolve pass makes; empty without one
+    std::vector<float> kbuffer;        ///< program->floats_per_pixel() floats per place of its view
+    std::vector<float> depth;          ///< window depth per place, as the depth format holds it
+    std::vector<std::uint8_t> stencil; ///< per place, where the depth format has any
+    std::vector<float> colour;         ///< RGBA per place of the "colour" surface, as the colour format holds it
+    std::vector<float> picture;        ///< RGBA per pixel that the resolve pass makes; empty without one
 
     /// Per place of the k-buffer: alive fragments that reached it; the depth test, in frames without a k-buffer.
     std::vector<std::uint32_t> depth_complexity;

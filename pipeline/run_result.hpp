@@ -3,10 +3,10 @@
 
 #include "pipeline/output/hazards.hpp"
 #include "sim/field.hpp"
+#include "sim/json_value.hpp"
 #include "sim/time.hpp"
 
 #include <cstdint>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -48,7 +48,7 @@ static_assert(sim::fully_described<WrongBecause>);
 struct PassResult {
     std::string name;
     sim::Cycle first_cycle = 0, cycles = 0;
-    nlohmann::ordered_json counters; ///< stage name -> counters of this pass
+    sim::JsonValue counters; ///< stage name -> counters of this pass
 };
 
 /// Counters of one draw, over all passes; RunResult::draw_counters says which. There may be a million of them.
@@ -82,9 +82,10 @@ struct RunResult {
 
     // Per place, row 0 first: with one sample, width * height pixels; see sample_planes.hpp. The k-buffer and what
     // follows from it are of its own view, colour and depth of the frame's.
-    std::vector<float> kbuffer; ///< floats_per_pixel floats each; empty when the frame has no k-buffer
-    std::vector<float> colour;  ///< RGBA of the "colour" surface; empty when the frame has none
-    std::vector<float> depth;   ///< window depths of the "depth" surface; empty when the frame has none
+    std::vector<float> kbuffer;        ///< floats_per_pixel floats each; empty when the frame has no k-buffer
+    std::vector<float> colour;         ///< RGBA of the "colour" surface; empty when the frame has none
+    std::vector<float> depth;          ///< window depths of the "depth" surface; empty when the frame has none
+    std::vector<std::uint8_t> stencil; ///< of the same surface, where its format has any
     // Per pixel, row 0 first: what happened to any of its samples.
     std::vector<std::uint8_t> hazard_mask; ///< bit i: hazard class i happened here; empty when there was none
     std::vector<std::uint8_t> wrong_mask;  ///< 1 where the pixel differs from the reference
@@ -93,11 +94,11 @@ struct RunResult {
     std::vector<std::string> built;
     std::vector<std::pair<std::string, std::string>> left_out; ///< unit, reason
 
-    nlohmann::ordered_json stages; ///< stage -> { "params", "counters", "activity" (cycles by activity) }, units summed
-    nlohmann::ordered_json stalls; ///< stage -> activity -> fraction of elapsed time
-    nlohmann::ordered_json caches; ///< cache -> { accesses, hits, misses, hit_rate }
-    nlohmann::ordered_json bytes;  ///< link -> bytes, and bytes per fragment
-    nlohmann::ordered_json area;   ///< as area_json() says
+    sim::JsonValue stages; ///< stage -> { "params", "counters", "activity" (cycles by activity) }, units summed
+    sim::JsonValue stalls; ///< stage -> activity -> fraction of elapsed time
+    sim::JsonValue caches; ///< cache -> { accesses, hits, misses, hit_rate }
+    sim::JsonValue bytes;  ///< link -> bytes, and bytes per fragment
+    sim::JsonValue area;   ///< as area_json() says
     std::vector<PassResult> passes;
     std::vector<std::string> draw_counters; ///< names of DrawResult::counters
     std::vector<DrawResult> draws;

@@ -13,9 +13,9 @@ double cycles_of_us(double us, const GpuParams& gpu) { return us * gpu.clock.cor
 
 /// Bytes of indices that the primitives of these counts read.
 double index_bytes_read(const Geometry& geometry, const GeometryDrawStats& counts) {
-    const double triangles = geometry.triangle_count();
-    if (triangles == 0) return 0;
-    const double instances = static_cast<double>(counts.primitives.value) / triangles;
+    const double primitives = geometry.primitive_count();
+    if (primitives == 0) return 0;
+    const double instances = static_cast<double>(counts.primitives.value) / primitives;
     return instances * static_cast<double>(geometry.index_count) * bytes_of(geometry.index_type);
 }
 

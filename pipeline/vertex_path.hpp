@@ -10,10 +10,10 @@
 
 #include "pipeline/frame.hpp"
 #include "pipeline/gpu_params.hpp"
+#include "sim/json_value.hpp"
 
 #include <atomic>
 #include <cstdint>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -67,9 +67,9 @@ struct VertexPathResult {
     GeometryDrawStats counts; ///< of all draws
     VertexPathDemand demand;  ///< of all draws
     std::vector<VertexPathDraw> draws;
-    double share_sampled = 1;      ///< of the primitives that the counts were taken from; 1: all of them
-    nlohmann::ordered_json stages; ///< detailed runs only: stage -> params, counters, activity
-    double host_seconds = 0;       ///< what the run itself took
+    double share_sampled = 1; ///< of the primitives that the counts were taken from; 1: all of them
+    sim::JsonValue stages;    ///< detailed runs only: stage -> params, counters, activity
+    double host_seconds = 0;  ///< what the run itself took
 
     double frames_per_second() const { return milliseconds > 0 ? 1000 / milliseconds : 0; }
     /// Name of the largest demand; the input port counts as one.

@@ -70,9 +70,9 @@ class DrawCounter {
   private:
     void primitive(std::uint32_t number, PathCounts& counts) {
         const auto vertices = reader_(number);
-        const ReuseResult reuse = reuse_.triangle(vertices);
+        const ReuseResult reuse = reuse_.primitive(vertices, corners_of(geometry_.topology));
         ++counts.primitives;
-        counts.degenerate += names_a_vertex_twice(vertices) ? 1U : 0U;
+        counts.degenerate += is_degenerate(geometry_.topology, vertices) ? 1U : 0U;
         for (unsigned missed = reuse.missed; missed != 0; missed &= missed - 1) {
             ++counts.runs;
             lines_.begin(vertices[static_cast<std::size_t>(std::countr_zero(missed))]);
@@ -96,7 +96,7 @@ class DrawCounter {
 PathCounts sample(const GpuParams& gpu, const Frame& frame, const Draw& draw, double share) {
     PathCounts counts;
     DrawCounter counter(gpu, frame, draw);
-    const std::uint32_t primitives = frame.resources->geometries[draw.geometry].triangle_count();
+    const std::uint32_t primitives = frame.resources->geometries[draw.geometry].primitive_count();
     const auto wanted = static_cast<std::uint32_t>(std::ceil(share * primitives / window));
     if (share >= 1 || std::uint64_t{wanted} * window >= primitives) {
         counter.count(0, primitives, counts);
@@ -118,7 +118,7 @@ GeometryDrawStats stats_of(const Frame& frame, const Draw& draw, const PathCount
                            const GeometryParams& params) {
     const Geometry& geometry = frame.resources->geometries[draw.geometry];
     const std::uint64_t instances = draw.instances.size();
-    const std::uint64_t primitives = geometry.triangle_count() * instances;
+    const std::uint64_t primitives = geometry.primitive_count() * instances;
     const double factor =
         counts.primitives == 0 ? 0 : static_cast<double>(primitives) / static_cast<double>(counts.primitives);
     const std::uint64_t index_lines =
@@ -126,7 +126,7 @@ GeometryDrawStats stats_of(const Frame& frame, const Draw& draw, const PathCount
         params.index_fetch.line;
     GeometryDrawStats stats;
     stats.primitives = {primitives};
-    stats.vertices_referenced = {3 * primitives};
+    stats.vertices_referenced = {corners_of(geometry.topology) * primitives};
     stats.vertex_shader_runs = {scaled(counts.runs, factor)};
     stats.culled = stats.degenerate = {scaled(counts.degenerate, factor)};
     stats.triangles = {primitives - stats.degenerate.value};
@@ -198,7 +198,7 @@ VertexPathResult estimate_vertex_path(const GpuParams& gpu, const Frame& frame, 
     std::map<std::pair<std::uint32_t, std::uint32_t>, PathCounts> known; // draws of one geometry and material are alike
     for (const Draw& draw : frame.draws)
         if (known.try_emplace({draw.geometry, draw.material}).second)
-            primitives += frame.resources->geometries[draw.geometry].triangle_count();
+            primitives += frame.resources->geometries[draw.geometry].primitive_count();
     const double share =
         primitives == 0 ? 1 : static_cast<double>(options.estimate_primitives) / static_cast<double>(primitives);
     for (auto& [pair, counts] : known) {

@@ -35,20 +35,21 @@ FragmentStream uncut_stream(const Frame& frame, const Pass& pass) {
     std::uint64_t primitives = 0;
     for (const std::uint32_t number : pass.draws) {
         const Draw& draw = frame.draws[number];
-        const std::uint32_t each = frame.resources->geometries[draw.geometry].triangle_count();
+        const std::uint32_t each = frame.resources->geometries[draw.geometry].primitive_count();
         for (std::uint32_t instance = 0; instance < draw.instances.size(); ++instance) {
             stream.draws.push_back({number, instance, static_cast<std::uint32_t>(primitives), each, 0, 0});
             primitives += each;
             if (primitives > std::numeric_limits<std::uint32_t>::max())
-                throw sim::InputError(fmt::format("pass {}: expected at most 2^32 - 1 triangles", pass.name));
+                throw sim::InputError(fmt::format("pass {}: expected at most 2^32 - 1 primitives", pass.name));
         }
     }
     stream.primitives.resize(primitives);
     std::uint32_t triangles = 0;
     for (const DrawRange& range : stream.draws) {
-        const PrimitiveReader read(*frame.resources, frame.resources->geometries[frame.draws[range.draw].geometry]);
+        const Geometry& geometry = frame.resources->geometries[frame.draws[range.draw].geometry];
+        const PrimitiveReader read(*frame.resources, geometry);
         for (std::uint32_t i = 0; i < range.primitives; ++i) {
-            const bool degenerate = names_a_vertex_twice(read(i));
+            const bool degenerate = is_degenerate(geometry.topology, read(i));
             stream.primitives[range.first_primitive + i] = {triangles, static_cast<std::uint8_t>(degenerate ? 0 : 1),
                                                             degenerate ? PrimitiveFate::culled_degenerate
                                                                        : PrimitiveFate::drawn};
@@ -98,7 +99,7 @@ VertexPathResult run_vertex_path(const GpuParams& gpu, const Frame& frame, const
         result.draws.push_back(draw);
     }
     result.stages = rig.front.report();
-    result.stages.update(rig.memory.report());
+    result.stages->update(rig.memory.report());
     result.host_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return result;
 }

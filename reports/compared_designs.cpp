@@ -7,11 +7,13 @@
 #include "reports/flatten.hpp"
 #include "reports/stopwatch.hpp"
 #include "sim/counted.hpp"
+#include "sim/described_json.hpp"
 #include "traces/submission.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 namespace reports {
 
@@ -112,7 +114,9 @@ void fit_to_area(ComparisonInput& input, std::uint64_t bytes) {
         }
         const pipeline::GpuParams before = row.gpu;
         row.gpu.rop = fitted.rop;
-        row.gpu_changes.update(changed_parameters(row.gpu, before));
+        const auto changes = changed_parameters(row.gpu, before);
+        row.gpu_changes->update(changes);
+        for (const auto& change : changes.items()) row.variant.replace(change.key(), change.value().dump());
         fitting.push_back(std::move(row));
     }
     if (fitting.empty())

@@ -9,11 +9,13 @@
 #include "reports/memory_limit.hpp"
 #include "reports/numbers.hpp"
 #include "reports/stopwatch.hpp"
+#include "sim/described_json.hpp"
 #include "traces/camera.hpp"
 
 #include <array>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
 #include <sys/resource.h>
 #include <thread>
 
@@ -134,7 +136,7 @@ std::uint64_t peak_memory() {
 
 std::size_t Comparison::base_run() const {
     for (std::size_t i = 0; i < runs.size(); ++i)
-        if (variants.at(i).design == "existing" && design_parameters.at(i).value("visibility", "") == "writeback")
+        if (variants.at(i).design == "existing" && design_parameters.at(i)->value("visibility", "") == "writeback")
             return i;
     return 0;
 }
@@ -211,7 +213,7 @@ Comparison compare(ComparisonInput input, const Supervision& supervision) {
     if (supervision.progress != nullptr) supervision.progress->quads_total = all_quads(input);
     for (const ComparedDesign& row : input.designs) {
         comparison.variants.push_back(facts_of(row));
-        comparison.design_parameters.push_back(row.design->parameters());
+        comparison.design_parameters.push_back(sim::to_json(row.design->parameters()));
         comparison.design_support.push_back(models::support_of(*row.design));
     }
     comparison.runs.resize(input.designs.size());

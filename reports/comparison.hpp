@@ -73,7 +73,7 @@ struct ComparedDesign {
     std::string name; ///< of row, column and folder
     std::shared_ptr<const pipeline::KBufferDesign> design;
     pipeline::GpuParams gpu;
-    nlohmann::ordered_json gpu_changes = nlohmann::ordered_json::object(); ///< what differs from the comparison's GPU
+    sim::JsonValue gpu_changes{};                              ///< what differs from the comparison's GPU
     std::shared_ptr<const SubmittedFrame> submitted = nullptr; ///< where the design takes the frame as it is
 };
 

@@ -4,6 +4,7 @@
 #include "pipeline/frame.hpp"
 #include "pipeline/run_result.hpp"
 #include "sim/config.hpp"
+#include "sim/json_value.hpp"
 
 #include <cstdint>
 #include <map>
@@ -39,7 +40,7 @@ struct FramePixels {
 
 struct GpuFacts {
     std::string name;
-    nlohmann::ordered_json parameters; ///< every effective value, nested by unit
+    sim::JsonValue parameters; ///< every effective value, nested by unit
     std::map<std::string, sim::Origin>
         origins; ///< of those values whose origin is stated, by path; also of the designs' parameters
 };
@@ -54,10 +55,10 @@ struct HostCost {
 
 /// What a run was of.
 struct VariantFacts {
-    std::string design;                                                    ///< id
-    std::string text;                                                      ///< "existing?visibility=rop_cache"
-    std::string label;                                                     ///< the same, shorter
-    nlohmann::ordered_json gpu_changes = nlohmann::ordered_json::object(); ///< parameters that differ from `gpu`
+    std::string design;           ///< id
+    std::string text;             ///< "existing?visibility=rop_cache"
+    std::string label;            ///< the same, shorter
+    sim::JsonValue gpu_changes{}; ///< parameters that differ from `gpu`
 };
 
 /// A comparison of designs with the same on-chip bytes.
@@ -79,11 +80,11 @@ struct Comparison {
     FramePixels reference; ///< in submission order, without time
     /// Fragments drawn onto each pixel of the k-buffer in one geometry pass; of several samples the most.
     std::vector<std::uint32_t> depth_complexity;
-    std::vector<pipeline::RunResult> runs;                 ///< in the order in which the designs were asked for
-    std::vector<VariantFacts> variants;                    ///< of each run
-    std::vector<nlohmann::ordered_json> design_parameters; ///< of each run
-    std::vector<nlohmann::ordered_json> design_support;    ///< what it can be used for, of each run
-    std::vector<FramePixels> pixels;                       ///< of each run
+    std::vector<pipeline::RunResult> runs;         ///< in the order in which the designs were asked for
+    std::vector<VariantFacts> variants;            ///< of each run
+    std::vector<sim::JsonValue> design_parameters; ///< of each run
+    std::vector<sim::JsonValue> design_support;    ///< what it can be used for, of each run
+    std::vector<FramePixels> pixels;               ///< of each run
     std::optional<EqualArea> equal_area;
     std::string same_runs; ///< which designs have the numbers of another one, and why; empty where all were run
     HostCost host;

@@ -3,6 +3,8 @@
 #include "reports/counter_reference.hpp"
 #include "reports/flatten.hpp"
 
+#include <nlohmann/json.hpp>
+
 namespace reports {
 
 namespace {
@@ -22,7 +24,7 @@ CounterRow row_of(const std::string& stage, const std::string& kind, const std::
 
 std::vector<CounterRow> counter_rows(const pipeline::RunResult& run) {
     std::vector<CounterRow> rows;
-    for (const auto& stage : run.stages.items())
+    for (const auto& stage : run.stages->items())
         for (const auto& kind : stage.value().items())
             for (const auto& [name, value] : flatten(kind.value()))
                 rows.push_back(row_of(stage.key(), kind.key(), name, cell_text(value)));

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace reports {
 
@@ -81,9 +82,9 @@ std::string named_numbers(std::string_view title, const ordered_json& numbers, T
 
 std::string counters_text(const pipeline::RunResult& run, TerminalStyle style) {
     std::string text;
-    for (const auto& stage : run.stages.items())
-        text +=
-            stage_text(stage.key(), stage.value(), run.stalls.value(stage.key(), ordered_json::object()), style) + "\n";
+    for (const auto& stage : run.stages->items())
+        text += stage_text(stage.key(), stage.value(), run.stalls->value(stage.key(), ordered_json::object()), style) +
+                "\n";
     text += named_numbers("caches", run.caches, style);
     text += named_numbers("bytes over links", run.bytes, style);
     text += named_numbers("on chip", run.area, style);

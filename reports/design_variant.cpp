@@ -74,6 +74,15 @@ std::string DesignVariant::label() const {
     return result;
 }
 
+void DesignVariant::replace(const std::string& path, const std::string& value) {
+    for (auto& [own, old] : settings) {
+        if (own != path) continue;
+        const std::string before = path + "=" + old;
+        text.replace(text.find(before), before.size(), path + "=" + value);
+        old = value;
+    }
+}
+
 DesignVariant parse_variant(std::string_view text) {
     DesignVariant variant;
     variant.text = text;

@@ -19,6 +19,8 @@ struct DesignVariant {
     std::string canonical() const;
     /// "existing rop_cache": values alone where they are words; the text itself where there are no settings.
     std::string label() const;
+    /// What became of a setting that the variant has; nothing where it has none of this path.
+    void replace(const std::string& path, const std::string& value);
 };
 
 /// Throws sim::InputError for a setting that is none, is named twice, or belongs to the frame or to another design.

@@ -1,5 +1,7 @@
 #include "reports/flatten.hpp"
 
+#include <nlohmann/json.hpp>
+
 namespace reports {
 
 using nlohmann::ordered_json;

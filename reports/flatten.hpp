@@ -1,7 +1,7 @@
 // Nested JSON as a list of paths and values.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <utility>
 #include <vector>

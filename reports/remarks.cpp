@@ -5,14 +5,15 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
 
 namespace reports {
 
 namespace {
 
 std::uint64_t culled(const pipeline::RunResult& run, const char* how) {
-    if (run.stages.is_null() || !run.stages.contains("clip_cull")) return 0;
-    return run.stages["clip_cull"]["counters"].value(how, std::uint64_t{0});
+    if (!run.stages->contains("clip_cull")) return 0;
+    return run.stages->at("clip_cull")["counters"].value(how, std::uint64_t{0});
 }
 
 } // namespace

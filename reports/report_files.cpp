@@ -9,6 +9,7 @@
 #include "sim/check.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace reports {
 

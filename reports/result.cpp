@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace reports {
 
@@ -54,9 +55,7 @@ ordered_json gpu_json(const GpuFacts& gpu) {
     ordered_json origins = ordered_json::object();
     for (const auto& [path, origin] : gpu.origins)
         origins[path] = {{"origin", origin.origin}, {"source", origin.source}, {"note", origin.note}};
-    return {{"name", gpu.name},
-            {"parameters", gpu.parameters.is_null() ? ordered_json::object() : gpu.parameters},
-            {"origins", std::move(origins)}};
+    return {{"name", gpu.name}, {"parameters", *gpu.parameters}, {"origins", std::move(origins)}};
 }
 
 // Rates are over the time of the runs themselves, so that they do not depend on how many ran at once.
@@ -144,15 +143,13 @@ ordered_json hazard_distance_json(const pipeline::RunResult& run) {
     return list;
 }
 
-ordered_json object_or_empty(const ordered_json& json) { return json.is_null() ? ordered_json::object() : json; }
-
 ordered_json passes_json(const pipeline::RunResult& run) {
     ordered_json list = ordered_json::array();
     for (const pipeline::PassResult& pass : run.passes)
         list.push_back({{"name", pass.name},
                         {"first_cycle", pass.first_cycle},
                         {"cycles", pass.cycles},
-                        {"counters", object_or_empty(pass.counters)}});
+                        {"counters", *pass.counters}});
     return list;
 }
 
@@ -214,8 +211,8 @@ ordered_json design_json(const Comparison& comparison, std::size_t number, const
     ordered_json json = {{"id", run.design},
                          {"design", variant.design},
                          {"variant", variant.text},
-                         {"parameters", object_or_empty(comparison.design_parameters.at(number))},
-                         {"gpu_changes", object_or_empty(variant.gpu_changes)},
+                         {"parameters", *comparison.design_parameters.at(number)},
+                         {"gpu_changes", *variant.gpu_changes},
                          {"cycles", run.cycles},
                          {"core_mhz", run.core_mhz},
                          {"milliseconds", milliseconds(run)},
@@ -231,12 +228,12 @@ ordered_json design_json(const Comparison& comparison, std::size_t number, const
                          {"lost_fragments", run.lost_fragments},
                          {"lost_updates", run.lost_updates},
                          {"layers", layers_json(run)},
-                         {"stages", object_or_empty(run.stages)},
-                         {"stalls", object_or_empty(run.stalls)},
-                         {"caches", object_or_empty(run.caches)},
-                         {"bytes", object_or_empty(run.bytes)},
-                         {"area", object_or_empty(run.area)},
-                         {"supports", object_or_empty(comparison.design_support.at(number))},
+                         {"stages", *run.stages},
+                         {"stalls", *run.stalls},
+                         {"caches", *run.caches},
+                         {"bytes", *run.bytes},
+                         {"area", *run.area},
+                         {"supports", *comparison.design_support.at(number)},
                          {"passes", passes_json(run)},
                          {"draws", draws_json(run)}};
     if (run.draws.size() > most_draws_listed) json["draws_summed"] = draws_summed_json(run);

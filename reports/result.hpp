@@ -3,7 +3,7 @@
 
 #include "reports/comparison_result.hpp"
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 namespace reports {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace reports {
 
@@ -26,8 +27,8 @@ double hazards_per_million(const pipeline::RunResult& run, pipeline::HazardKind 
 }
 
 std::optional<double> on_chip_bytes(const pipeline::RunResult& run) {
-    const auto found = run.area.find("total_bytes");
-    if (found == run.area.end()) return std::nullopt;
+    const auto found = run.area->find("total_bytes");
+    if (found == run.area->end()) return std::nullopt;
     return found->get<double>();
 }
 
@@ -44,8 +45,8 @@ std::string samples_text(const Comparison& comparison) {
 }
 
 std::optional<double> bytes_over(const pipeline::RunResult& run, std::string_view link) {
-    const auto found = run.bytes.find(link);
-    if (found == run.bytes.end() || !found->contains("bytes")) return std::nullopt;
+    const auto found = run.bytes->find(link);
+    if (found == run.bytes->end() || !found->contains("bytes")) return std::nullopt;
     return (*found)["bytes"].get<double>();
 }
 

@@ -10,7 +10,7 @@
 #include "traces/workloads.hpp"
 
 #include <map>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -69,6 +69,7 @@ struct StudyValue {
     std::string gpu, series, x;
     std::vector<StudyNumber> numbers; ///< of geometry feed: all of study_measures(); of designs: those of the study
     std::string limit;                ///< what limits geometry feed
+    bool drew = true;                 ///< a fragment of some run, where designs ran
     double measure = 0;               ///< the first one that the study plots
 };
 
@@ -101,6 +102,9 @@ std::vector<StudyValue> run_series(const Study& study, const StudySeries& series
 /// @param points where finished ones are kept and found; null: nowhere
 StudyResult run_study(const Study& study, const std::vector<std::string>& gpus, const GeometryRunOptions& options,
                       StudyPoints* points = nullptr);
+
+/// Which points drew nothing; empty where all did.
+std::string nothing_drawn(const StudyResult& result);
 
 std::string studies_text(const std::vector<std::string>& names, TerminalStyle style);
 std::string study_text(const StudyResult& result, TerminalStyle style);

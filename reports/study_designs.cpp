@@ -56,6 +56,7 @@ class Samples {
     void add(const Comparison& comparison, const std::string& place) {
         const RunValues values(comparison, 0);
         change_.add(comparison, 0);
+        drew_ = drew_ || comparison.runs.front().fragments != 0;
         for (std::size_t i = 0; i < numbers_.size(); ++i) {
             const StudyMeasure& measure = study_.measures[i];
             if (is_change(measure)) continue;
@@ -72,6 +73,8 @@ class Samples {
         for (std::size_t i = 0; i < numbers_.size(); ++i) list.push_back(number(study_.measures[i], numbers_[i]));
         return list;
     }
+
+    bool drew() const { return drew_; }
 
   private:
     static bool is_change(const StudyMeasure& measure) {
@@ -92,6 +95,7 @@ class Samples {
     const Study& study_;
     std::vector<std::vector<double>> numbers_; ///< by measure, then seed
     FrameChange change_;
+    bool drew_ = false;
 };
 
 StudyValue measure(const Study& study, const StudySeries& series, const StudyPoint& point, const std::string& gpu,
@@ -107,6 +111,7 @@ StudyValue measure(const Study& study, const StudySeries& series, const StudyPoi
     }
     StudyValue value;
     value.numbers = samples.numbers();
+    value.drew = samples.drew();
     return value;
 }
 

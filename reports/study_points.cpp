@@ -4,6 +4,7 @@
 #include "reports/result.hpp"
 #include "reports/study_runs.hpp"
 #include "sim/check.hpp"
+#include "sim/described_json.hpp"
 #include "sim/read_file.hpp"
 #include "traces/hash.hpp"
 #include "traces/scene.hpp"
@@ -12,6 +13,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <sys/file.h>
 #include <unistd.h>
 
@@ -22,7 +24,7 @@ using nlohmann::ordered_json;
 
 namespace {
 
-constexpr std::string_view format = "ropsim study point 1"; // the number is that of the file's form
+constexpr std::string_view format = "ropsim study point 2"; // the number is that of the file's form
 constexpr std::uint64_t largest_file = std::uint64_t{1} << 26U;
 
 std::string hash_of(std::string_view text) {
@@ -49,11 +51,8 @@ ordered_json value_json(const StudyValue& value) {
     ordered_json numbers = ordered_json::array();
     for (const StudyNumber& number : value.numbers)
         numbers.push_back({number.value, number_json(number.mean), number_json(number.low), number_json(number.high)});
-    return {{"gpu", value.gpu},
-            {"series", value.series},
-            {"x", value.x},
-            {"limit", value.limit},
-            {"numbers", std::move(numbers)}};
+    return {{"gpu", value.gpu},     {"series", value.series}, {"x", value.x},
+            {"limit", value.limit}, {"drew", value.drew},     {"numbers", std::move(numbers)}};
 }
 
 StudyValue value_of(const ordered_json& json) {
@@ -62,6 +61,7 @@ StudyValue value_of(const ordered_json& json) {
     value.series = json.at("series").get<std::string>();
     value.x = json.at("x").get<std::string>();
     value.limit = json.at("limit").get<std::string>();
+    value.drew = json.at("drew").get<bool>();
     for (const ordered_json& number : json.at("numbers"))
         value.numbers.push_back({number.at(0).get<std::string>(), number_of(number.at(1)), number_of(number.at(2)),
                                  number_of(number.at(3))});

@@ -7,9 +7,11 @@
 #include "reports/study_runs.hpp"
 #include "reports/text_table.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <map>
+#include <nlohmann/json.hpp>
 
 namespace reports {
 
@@ -120,6 +122,25 @@ nlohmann::ordered_json numbers_json(const StudyResult& result, const StudyValue&
 
 } // namespace
 
+std::string nothing_drawn(const StudyResult& result) {
+    const std::size_t lines = result.study.series.size() * result.study.gpus.size();
+    std::map<std::string, std::vector<std::string>> empty; // points by line
+    for (std::size_t i = 0; i < result.values.size(); ++i)
+        if (!result.values[i].drew) empty[line_name(result, result.values[i])].push_back(result.values[i].x);
+    if (empty.empty()) return "";
+    const auto& first = empty.begin()->second;
+    const bool all = empty.size() == lines &&
+                     std::all_of(empty.begin(), empty.end(), [&](const auto& line) { return line.second == first; });
+    std::vector<std::string> where;
+    if (all)
+        where.push_back(fmt::format("{} = {}", result.study.x, fmt::join(first, ", ")));
+    else
+        for (const auto& [line, points] : empty)
+            where.push_back(fmt::format("{} = {} of {}", result.study.x, fmt::join(points, ", "), line));
+    return fmt::format("no fragment reached the pixels at {}: numbers of these points say nothing",
+                       fmt::join(where, "; "));
+}
+
 std::string studies_text(const std::vector<std::string>& names, TerminalStyle style) {
     std::vector<std::vector<std::string>> rows;
     for (const std::string& name : names) {
@@ -198,7 +219,7 @@ nlohmann::ordered_json study_json(const StudyResult& result) {
 std::string study_page(const StudyResult& result) {
     const Table table = study_table(result);
     const std::string intro = paragraph(result.study.question, "") + paragraph(result.study.answer, "") +
-                              paragraph(result.study.source, " class=\"note\"") +
+                              paragraph(nothing_drawn(result), "") + paragraph(result.study.source, " class=\"note\"") +
                               fmt::format("<p class=\"note\">ropsim {} ({}); {}.</p>\n", version_text(),
                                           escape_html(build_text()), how_run(result));
     return plot_page(result.study.title, intro, plots_of(result),

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace reports {
 
@@ -143,7 +144,7 @@ std::string base_text(const Comparison& comparison, bool labels) {
 
 std::string caches_text(const RunResult& run) {
     std::string text;
-    for (const auto& cache : run.area.at("tile_caches").items())
+    for (const auto& cache : run.area->at("tile_caches").items())
         if (const auto bytes = cache.value().get<std::uint64_t>(); bytes != 0)
             text += fmt::format("{}{} {}", text.empty() ? "" : ", ", cache.key(), with_commas(bytes));
     return text;
@@ -179,16 +180,21 @@ std::string wrap(const std::string& text, std::size_t columns_allowed, std::size
     constexpr std::size_t usual_indent = 4;
     if (indent > columns_allowed / 2) indent = usual_indent; // words need room, too
     std::string result, line;
+    bool blank = false; // before the next word
     for (std::size_t begin = 0; begin < text.size();) {
-        const std::size_t end = std::min(text.find(' ', begin), text.size());
+        std::size_t end = std::min(text.find(' ', begin), text.size());
+        if (end - begin + indent > columns_allowed) // "design?key=value&key=value" may end a line behind each setting
+            if (const std::size_t setting = text.find('&', begin); setting < end) end = setting + 1;
         const std::string word = text.substr(begin, end - begin);
-        if (!line.empty() && line.size() + 1 + word.size() > columns_allowed) {
+        const bool is_begun = line.find_first_not_of(' ') != std::string::npos;
+        if (is_begun && line.size() + (blank ? 1 : 0) + word.size() > columns_allowed) {
             result += without_trailing_blanks(line) + "\n";
             line = std::string(indent, ' ') + word;
         } else {
-            line += (begin == 0 ? "" : " ") + word;
+            line += (blank ? " " : "") + word;
         }
-        begin = end + 1;
+        blank = end < text.size() && text[end] == ' ';
+        begin = end + (blank ? 1 : 0);
     }
     return result + without_trailing_blanks(line) + "\n";
 }

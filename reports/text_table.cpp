@@ -55,7 +55,12 @@ std::string text_table(const std::vector<TextColumn>& columns, const std::vector
         // The first column stands beside every other one: it has the room that the widest of them leaves.
         constexpr std::size_t least = 8;
         const std::size_t other = *std::max_element(widths.begin() + 1, widths.end());
-        widths[0] = std::min(widths[0], std::max(least, style.columns - std::min(style.columns, other + 2)));
+        const auto room_beside = [&](std::size_t width) {
+            return std::max(least, style.columns - std::min(style.columns, width + 2));
+        };
+        widths[0] = std::min(widths[0], room_beside(other));
+        for (std::size_t i = 1; i < widths.size(); ++i)
+            if (columns[i].is_text) widths[i] = std::min(widths[i], room_beside(widths[0]));
     }
     const bool with_units =
         std::any_of(units.begin(), units.end(), [](const std::string& unit) { return !unit.empty(); });

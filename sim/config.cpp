@@ -1,10 +1,12 @@
 #include "sim/config.hpp"
 
+#include "sim/described_json.hpp"
 #include "sim/read_file.hpp"
 #include "sim/suggest.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <toml++/toml.h>
 
@@ -133,8 +135,8 @@ void Config::complete_from(const Config& base) {
 std::string Config::take_text(const std::string& path) {
     const auto found = leaves_.find(path);
     if (found == leaves_.end()) return {};
-    if (!found->second.value.is_string()) detail::expected({found->second.place, path}, "text", found->second.value);
-    std::string text = found->second.value.get<std::string>();
+    if (!found->second.value->is_string()) detail::expected({found->second.place, path}, "text", *found->second.value);
+    std::string text = found->second.value->get<std::string>();
     leaves_.erase(found);
     return text;
 }
@@ -168,28 +170,44 @@ const Config::Leaf* Config::use(const std::string& path, bool is_text) {
     if (found == leaves_.end()) return nullptr;
     Leaf& leaf = found->second;
     leaf.used = true;
-    if (is_text && !leaf.raw.empty() && !leaf.value.is_string()) leaf.value = leaf.raw;
+    if (is_text && !leaf.raw.empty() && !leaf.value->is_string()) *leaf.value = leaf.raw;
     return &leaf;
 }
 
 void Config::expect_table(const std::string& path) const {
     if (const auto found = leaves_.find(path); found != leaves_.end())
-        detail::expected({found->second.place, path}, "a table", found->second.value);
+        detail::expected({found->second.place, path}, "a table", *found->second.value);
 }
 
-void Config::note_section(std::string_view section) { sections_.emplace(section); }
+void Config::read_table(std::string_view section, const StructTable& table, void* object) {
+    sections_.emplace(section);
+    read_fields(std::string(section), table, object);
+}
 
-void Config::note_effective(std::string_view section, ordered_json values) {
-    ordered_json* place = &effective_;
+void Config::read_fields(const std::string& section, const StructTable& table, void* object) {
+    expect_table(section);
+    for (const FieldRow& field : table.fields) {
+        const Kind kind = field.type->kind;
+        const std::string path = detail::join_path(section, field.name);
+        void* member = member_at(field, object);
+        if (kind == Kind::table)
+            read_fields(path, *field.type->table, member);
+        else if (const Leaf* leaf = use(path, kind == Kind::text || kind == Kind::choice))
+            detail::read_member(field, member, *leaf->value, {leaf->place, path});
+    }
+}
+
+void Config::note_effective(std::string_view section, DescribedRef object) {
+    ordered_json* place = &*effective_;
     while (!section.empty()) {
         const std::size_t dot = section.find('.');
         place = &(*place)[std::string(section.substr(0, dot))];
         section = dot == std::string_view::npos ? std::string_view() : section.substr(dot + 1);
     }
     if (place->is_object())
-        place->update(values, true);
+        place->update(to_json(object), true);
     else
-        *place = std::move(values);
+        *place = to_json(object);
 }
 
 bool Config::has(std::string_view path) const {

@@ -4,7 +4,8 @@
 // is a value with its origin: clk_MHz = { value = 650, origin = "public", source = "...", note = "..." }.
 #pragma once
 
-#include "sim/described_json.hpp"
+#include "sim/described.hpp"
+#include "sim/json_value.hpp"
 
 #include <filesystem>
 #include <map>
@@ -43,9 +44,8 @@ class Config {
     /// Overwrites those fields of `object` that are configured below the dotted path `section` ("" is the root).
     template <Described S>
     void read(std::string_view section, S& object) {
-        note_section(section);
-        read_fields(std::string(section), object);
-        note_effective(section, to_json(object));
+        read_table(section, struct_table<S>, &object);
+        note_effective(section, DescribedRef(object));
     }
 
     /// True when anything at or below the dotted path is configured.
@@ -55,14 +55,14 @@ class Config {
     void expect_all_used() const;
 
     /// All structs read so far with all their values, as nested objects.
-    const nlohmann::ordered_json& effective() const { return effective_; }
+    const nlohmann::ordered_json& effective() const { return *effective_; }
 
     /// The values whose origin is stated, by path.
     std::map<std::string, Origin> origins() const;
 
   private:
     struct Leaf {
-        nlohmann::ordered_json value;
+        JsonValue value;
         std::string place; ///< "g70.toml:12:3", "--set"
         std::string raw;   ///< the text after `=` of a --set
         Origin origin;
@@ -72,31 +72,19 @@ class Config {
     struct Inserter;
 
     void insert_toml(std::string_view text, const std::string& name, const std::string* raw);
-    void note_section(std::string_view section);
-    void note_effective(std::string_view section, nlohmann::ordered_json values);
+    void read_table(std::string_view section, const StructTable& table, void* object);
+    void read_fields(const std::string& section, const StructTable& table, void* object);
+    void note_effective(std::string_view section, DescribedRef object);
     /// The leaf at `path`, marked as used; nullptr when there is none.
     const Leaf* use(const std::string& path, bool is_text);
     /// A struct is read at `path`: a plain value there is an error.
     void expect_table(const std::string& path) const;
 
-    template <Described S>
-    void read_fields(const std::string& section, S& object) {
-        expect_table(section);
-        for_each_field(object, [&](const auto& field, auto& member) {
-            using Member = std::remove_cvref_t<decltype(member)>;
-            const std::string path = detail::join_path(section, field.name);
-            if constexpr (Described<Member>)
-                read_fields(path, member);
-            else if (const Leaf* leaf = use(path, std::same_as<Member, std::string> || NamedEnum<Member>))
-                detail::read_value(member, leaf->value, {leaf->place, path}, field);
-        });
-    }
-
     std::map<std::string, Leaf> leaves_;
     std::map<std::string, std::string> empty_tables_; ///< path -> place
     std::set<std::string> known_;                     ///< every path that a read() asked for
     std::set<std::string> sections_;
-    nlohmann::ordered_json effective_ = nlohmann::ordered_json::object();
+    JsonValue effective_;
 };
 
 } // namespace sim

@@ -215,7 +215,9 @@ pipeline::View make_view(const Scene& scene, const std::string& camera, std::uin
     if (numbers && numbers->size() == 7) return free_view(scene, camera, *numbers, width, height);
     if (numbers && numbers->size() == matrix_numbers) return matrix_view(*numbers, width, height);
     throw sim::InputError(
-        fmt::format("camera '{}': expected auto, the number of a camera, or ex,ey,ez,tx,ty,tz,fovy", camera));
+        fmt::format("camera '{}': expected auto, the number of a camera, ex,ey,ez,tx,ty,tz,fovy, or the 32 numbers of "
+                    "a view and a projection matrix",
+                    camera));
 }
 
 std::string view_text(const pipeline::View& view) {

@@ -1,6 +1,7 @@
 #include "traces/parameters.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace traces {
 
@@ -19,11 +20,11 @@ void add_assignment(nlohmann::ordered_json& values, std::string_view assignment,
     values[key] = value_of_text(assignment.substr(equals + 1));
 }
 
-nlohmann::ordered_json values_of_query(std::string_view text, std::string_view place) {
-    auto values = nlohmann::ordered_json::object();
+sim::JsonValue values_of_query(std::string_view text, std::string_view place) {
+    sim::JsonValue values;
     while (!text.empty()) {
         const std::size_t next = text.find('&');
-        add_assignment(values, text.substr(0, next), place);
+        add_assignment(*values, text.substr(0, next), place);
         text = next == std::string_view::npos ? std::string_view() : text.substr(next + 1);
     }
     return values;

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "sim/described_json.hpp"
+#include "sim/json_value.hpp"
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 
@@ -17,7 +17,7 @@ nlohmann::ordered_json value_of_text(std::string_view text);
 void add_assignment(nlohmann::ordered_json& values, std::string_view assignment, std::string_view place);
 
 /// The assignments of "key=value&key=value". Throws sim::InputError as add_assignment() does.
-nlohmann::ordered_json values_of_query(std::string_view text, std::string_view place);
+sim::JsonValue values_of_query(std::string_view text, std::string_view place);
 
 /// The defaults of P overridden by `values`. Throws sim::InputError, beginning with `place`, for unknown names and for
 /// values of the wrong type or out of range.

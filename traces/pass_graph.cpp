@@ -119,8 +119,8 @@ Needs needs_of(const Frame& frame, const Offers& offers, FragmentColour colour) 
     Needs needs;
     for (const Pass& pass : frame.passes) {
         needs.colours |= pass.colour || (pass.kbuffer && frame.program->needs_colour());
-        needs.depth |= pass.depth.test || pass.depth.write;
-        needs.early_depth |= pass.depth.test && !pass.depth.write;
+        needs.depth |= pass.uses_depth();
+        needs.early_depth |= pass.tests_depth() && !pass.writes_depth();
         needs.colour_surface |= contains(pass.writes, colour_surface) || contains(pass.reads, colour_surface);
         needs.kbuffer |= pass.kbuffer;
         needs.attributes |= pass.attributes;
@@ -215,7 +215,7 @@ void PassGraph::add_clear(std::string name, std::vector<std::string> writes) {
 }
 
 void PassGraph::add_draw(std::string name, std::vector<std::string> reads, std::vector<std::string> writes,
-                         std::vector<std::uint32_t> draws, bool both_faces, pipeline::BlendMode blend) {
+                         std::vector<std::uint32_t> draws, bool both_faces, const pipeline::BlendState& blend) {
     for (const std::uint32_t draw : draws) CHECK(draw < frame_.draws.size());
     CHECK(!contains(writes, kbuffer_surface) || frame_.program != nullptr);
     Pass pass;
@@ -224,7 +224,9 @@ void PassGraph::add_draw(std::string name, std::vector<std::string> reads, std::
     pass.writes = std::move(writes);
     pass.draws = std::move(draws);
     pass.both_faces = both_faces;
-    pass.blend = blend;
+    pass.states[0].blend[0] = blend;
+    pass.states[0].depth.test = contains(pass.reads, depth_surface);
+    pass.states[0].depth.write = contains(pass.writes, depth_surface);
     if (contains(pass.writes, kbuffer_surface) && !contains(pass.reads, kbuffer_surface))
         pass.reads.emplace_back(kbuffer_surface);
     passes_.push_back(std::move(pass));
@@ -238,6 +240,13 @@ void PassGraph::vertex_shader_reads(std::uint32_t attributes) {
 void PassGraph::write_targets(std::uint32_t targets) {
     CHECK(!passes_.empty() && passes_.back().kind == PassKind::draw && targets >= 1);
     passes_.back().colour_targets = targets;
+}
+
+void PassGraph::set_states(std::vector<pipeline::RasterState> states, std::vector<std::uint32_t> of_draw) {
+    CHECK(!passes_.empty() && passes_.back().kind == PassKind::draw && !states.empty());
+    CHECK(of_draw.empty() || of_draw.size() == passes_.back().draws.size());
+    passes_.back().states = std::move(states);
+    passes_.back().state_of_draw = std::move(of_draw);
 }
 
 void PassGraph::use(pipeline::FragmentColour colour) { fragment_colour_ = colour; }
@@ -264,7 +273,11 @@ Frame PassGraph::lower() const {
     frame.passes = culling.kept();
     for (Pass& pass : frame.passes) {
         if (pass.kind != PassKind::draw) continue;
-        pass.depth = {contains(pass.reads, depth_surface), contains(pass.writes, depth_surface)};
+        for (pipeline::RasterState& state : pass.states) {
+            state.depth.test &= contains(pass.reads, depth_surface);
+            state.stencil.test &= contains(pass.reads, depth_surface);
+            state.depth.write &= contains(pass.writes, depth_surface);
+        }
         pass.colour = contains(pass.writes, colour_surface);
         pass.kbuffer = contains(pass.writes, kbuffer_surface);
     }

@@ -15,7 +15,7 @@ inline constexpr const char* colour_surface = "colour";
 inline constexpr const char* kbuffer_surface = "kbuffer";
 inline constexpr const char* picture_surface = "picture"; ///< what a resolve pass writes
 
-/// Passes in the order of submission. A pass names what it reads and writes; `DepthState` and the flags `colour` and
+/// Passes in the order of submission. A pass names what it reads and writes; depth tests and the flags `colour` and
 /// `kbuffer` of pipeline::Pass follow from those names and from add_draw's arguments.
 class PassGraph {
   public:
@@ -28,13 +28,15 @@ class PassGraph {
     /// writing kbuffer runs the program (which reads the entries as well). `both_faces` turns face culling off; `blend`
     /// is how colours are written, and blending reads the colour surface.
     void add_draw(std::string name, std::vector<std::string> reads, std::vector<std::string> writes,
-                  std::vector<std::uint32_t> draws, bool both_faces = false,
-                  pipeline::BlendMode blend = pipeline::BlendMode::replace);
+                  std::vector<std::uint32_t> draws, bool both_faces = false, const pipeline::BlendState& blend = {});
     /// The vertex shader of the pass added last reads these attributes beside what shading needs: bits as in
     /// pipeline::mask_of().
     void vertex_shader_reads(std::uint32_t attributes);
     /// The pass added last writes that many colour targets at once; see pipeline::Pass::colour_targets.
     void write_targets(std::uint32_t targets);
+    /// The raster states of the pass added last, and which of them each of its draws has (none: all the first), instead
+    /// of the one that add_draw() made. Tests and writes of surfaces that the pass does not name are switched off.
+    void set_states(std::vector<pipeline::RasterState> states, std::vector<std::uint32_t> of_draw = {});
     /// What colours all passes of the frame ask their fragments for.
     void use(pipeline::FragmentColour colour);
     void add_resolve(std::string name, std::vector<std::string> reads, std::vector<std::string> writes);

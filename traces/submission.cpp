@@ -95,7 +95,9 @@ class Resubmission {
             begin = end;
         }
         pass.parts.shrink_to_fit();
-        if (flush_ && !triangles.empty()) pass.draws.push_back(flush_->draw);
+        if (!flush_ || triangles.empty()) return;
+        pass.draws.push_back(flush_->draw);
+        if (!pass.state_of_draw.empty()) pass.state_of_draw.push_back(0);
     }
 
     // Triangles of one draw and one instance that follow each other, up to the size of a batch.

@@ -1,5 +1,6 @@
 #include "traces/workloads.hpp"
 
+#include "models/programs/language/user_program.hpp"
 #include "sim/check.hpp"
 #include "sim/suggest.hpp"
 #include "traces/pass_graph.hpp"
@@ -7,11 +8,12 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
 #include <numeric>
 
 namespace traces {
 
-void WorkloadOptions::set(std::string_view assignment) { add_assignment(values, assignment, "workload"); }
+void WorkloadOptions::set(std::string_view assignment) { add_assignment(*values, assignment, "workload"); }
 
 WorkloadOptions WorkloadOptions::of(const std::vector<std::string>& assignments) {
     WorkloadOptions options;
@@ -61,13 +63,20 @@ Workload taking(Workload workload, void (*change)(WorkloadOptions&, const std::s
 }
 
 void as_text(WorkloadOptions& options, const std::string& name) {
-    const auto found = options.values.find(name);
-    if (found != options.values.end() && found->is_number()) *found = found->dump();
+    const auto found = options.values->find(name);
+    if (found != options.values->end() && found->is_number()) *found = found->dump();
 }
 
 void as_list(WorkloadOptions& options, const std::string& name) {
-    const auto found = options.values.find(name);
-    if (found != options.values.end() && found->is_number()) *found = nlohmann::ordered_json::array({*found});
+    const auto found = options.values->find(name);
+    if (found != options.values->end() && found->is_number()) *found = nlohmann::ordered_json::array({*found});
+}
+
+void own_k(WorkloadOptions& options, const std::string& k) {
+    const auto program = options.values->find("program");
+    if (options.values->contains(k) || program == options.values->end() || !program->is_string()) return;
+    const auto name = program->get<std::string>();
+    if (name.ends_with(".kb")) options.values[k] = models::load_user_program(name, 0).program->k();
 }
 
 const std::string& usual_workload() { return workloads().front().id; }

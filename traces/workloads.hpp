@@ -6,12 +6,12 @@
 
 #include "pipeline/frame.hpp"
 #include "sim/described.hpp"
+#include "sim/json_value.hpp"
 #include "traces/rays.hpp"
 #include "traces/scene.hpp"
 
 #include <functional>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -22,7 +22,7 @@ namespace traces {
 
 /// Parameters of a workload by name; what is not named keeps its default. `values["k"] = 8`, or set("k=8").
 struct WorkloadOptions {
-    nlohmann::ordered_json values = nlohmann::ordered_json::object();
+    sim::JsonValue values;
 
     /// "key=value" as on the command line. Throws sim::InputError when there is no key.
     void set(std::string_view assignment);

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "models/kbuffers/library.hpp"
-#include "sim/described_json.hpp"
+#include "sim/described.hpp"
 
 namespace models {
 
@@ -15,7 +15,7 @@ class ConfiguredDesign : public pipeline::KBufferDesign {
     std::string_view id() const override { return Design::name; }
     std::string_view summary() const override { return Design::text; }
     std::string refuses(const pipeline::ModifyProgram&) const override { return {}; }
-    nlohmann::ordered_json parameters() const override { return sim::to_json(params_); }
+    sim::DescribedRef parameters() const override { return sim::DescribedRef(params_); }
     /// Hardware that is there anyway.
     pipeline::AddedHardware area(const pipeline::ModifyProgram&, const pipeline::View&,
                                  const pipeline::GpuShape&) const override {

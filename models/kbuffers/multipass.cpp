@@ -6,6 +6,7 @@
 // is the one of 2006 hardware and loses surfaces closer than eps (specification 004, section 6.1 item 5). Source:
 // specification 004, sections 3.3 (A10) and 7.6.
 #include "models/kbuffers/configured_design.hpp"
+#include "pipeline/format_choice.hpp"
 
 namespace models {
 
@@ -16,7 +17,7 @@ using namespace pipeline;
 struct MultipassParams {
     PeelRule rule = PeelRule::exact;
     double eps = 1e-4;
-    DepthFormat depth_format = DepthFormat::d32f;
+    DepthChoice depth_format = DepthChoice::d32f;
 
     static constexpr auto fields() {
         using P = MultipassParams;
@@ -41,7 +42,7 @@ class Multipass final : public ConfiguredDesign<Multipass, MultipassParams> {
     KBufferPlan plan(const ModifyProgram& program, const View&) const override {
         KBufferPlan plan;
         plan.site = UpdateSite::passes;
-        plan.passes = {params_.rule, params_.eps, params_.depth_format};
+        plan.passes = {params_.rule, params_.eps, format_of(params_.depth_format)};
         if (program.peeling() == Peeling::ranges) plan.passes.capture = PassCapture::range;
         return plan;
     }

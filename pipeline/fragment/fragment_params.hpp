@@ -19,7 +19,7 @@ struct FragmentParams {
     static constexpr auto fields() {
         using P = FragmentParams;
         return std::tuple{
-            sim::field<&P::pipes>("Quad pipelines, four fragments wide (P)").unit("pipes").range(1, 60),
+            sim::field<&P::pipes>("Quad pipelines, four fragments wide (P)").unit("pipes").range(1, 64),
             sim::field<&P::quads_in_flight>("Quads in flight per pipe (W)").unit("quads").range(1, 4096),
             sim::field<&P::alu_per_clk>("Vector instructions issued per cycle for a quad")
                 .unit("instructions")

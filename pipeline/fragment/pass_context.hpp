@@ -1,9 +1,10 @@
 // What every unit may read about the pass that is running. It changes only between runs of the event core.
 #pragma once
 
+#include "pipeline/draw_states.hpp"
 #include "pipeline/fragment_stream.hpp"
 #include "pipeline/frame.hpp"
-#include "pipeline/functional/depth_format.hpp"
+#include "pipeline/functional/surface_texel.hpp"
 #include "pipeline/output/kbuffer_design.hpp"
 #include "pipeline/output/surface_layout.hpp"
 
@@ -32,9 +33,8 @@ struct PassContext {
     const Frame* frame = nullptr;
     SurfaceLayout layout;
     FragmentEnd end = FragmentEnd::depth_colour;
-    DepthState depth;
+    DrawStates states; ///< of the fixed-function units behind the shader
     bool colour_write = false;
-    BlendMode blend = BlendMode::replace;
     std::uint32_t colour_bytes = 4; ///< per pixel of the colour target
     std::uint32_t depth_bytes = 4;
     const PeeledLayer* behind = nullptr; ///< reject what is not behind this layer
@@ -44,11 +44,13 @@ struct PassContext {
     std::uint32_t first_kept = 0;        ///< lists: fragments of a pixel that earlier passes have dealt with
     PassesSite peel;
     const std::vector<DepthCode>* read_only_depth = nullptr; ///< early depth test against a finished depth surface
-    DepthFormat read_only_format = DepthFormat::d24;
-    DepthFormat depth_format = DepthFormat::d24; ///< of the surface that the pass tests and writes
-    std::vector<ShaderCost> shader_costs;        ///< by draw
-    const ScreenPass* screen = nullptr;          ///< a full-screen pass, whose shader counts for every quad
-    std::uint32_t atomic_latency = 0;            ///< cycles that each shader waits for an atomic before it is done
+    SurfaceFormat read_only_format = SurfaceFormat::d24;
+    DrawStates read_only_states;                     ///< whose depth compares that test makes
+    SurfaceFormat depth_format = SurfaceFormat::d24; ///< of the surface that the pass tests and writes
+    SurfaceFormat colour_format = SurfaceFormat::rgba8;
+    std::vector<ShaderCost> shader_costs; ///< by draw
+    const ScreenPass* screen = nullptr;   ///< a full-screen pass, whose shader counts for every quad
+    std::uint32_t atomic_latency = 0;     ///< cycles that each shader waits for an atomic before it is done
     bool textures = false;
     /// A task is a group of sample quads: shaded once, taken apart in the ROP. Else each sample quad is a task.
     bool multisampled = false;

@@ -2,6 +2,7 @@
 #include "pipeline/functional/front_end_passes.hpp"
 #include "pipeline/functional/lanes.hpp"
 #include "pipeline/functional/parallel.hpp"
+#include "pipeline/functional/points_lines.hpp"
 #include "pipeline/functional/raster_triangle.hpp"
 #include "pipeline/functional/sample_walk.hpp"
 #include "sim/check.hpp"
@@ -47,7 +48,7 @@ class Coverage {
 
   private:
     void cover(std::uint32_t primitive) {
-        cull_and_clip(plan_.viewport, instance_.culling, plan_.corners(instance_, read_(primitive)), parts_);
+        plan_.cull_and_clip(instance_, read_(primitive), parts_);
         Primitive& result = stream_.primitives[range_.first_primitive + primitive];
         result.first_triangle = static_cast<std::uint32_t>(output_.triangles.size());
         result.triangles = static_cast<std::uint8_t>(parts_.count);
@@ -61,12 +62,28 @@ class Coverage {
         const auto number = static_cast<std::uint32_t>(output_.triangles.size());
         const std::size_t first = output_.quads.size();
         const auto add = [&](std::int32_t x, std::int32_t y, std::uint32_t mask) { add_group(number, x, y, mask); };
-        const std::uint32_t samples = plan_.view.samples;
-        const std::uint32_t tiles =
-            samples == 1 ? for_each_quad(set_up(part.corners[0], part.corners[1], part.corners[2], plan_.viewport), add)
-                         : for_each_sampled_quad(part.corners, plan_.viewport, samples, add);
+        const std::uint32_t tiles = for_each_group(part, add);
         output_.triangles.push_back({range_.draw, primitive, static_cast<QuadId>(first),
-                                     static_cast<std::uint32_t>(output_.quads.size() - first), tiles});
+                                     static_cast<std::uint32_t>(output_.quads.size() - first), tiles,
+                                     signed_area(part.corners[0], part.corners[1], part.corners[2]) < 0});
+    }
+
+    // Returns the tiles that are visited.
+    template <class Add>
+    std::uint32_t for_each_group(const PrimitivePart& part, const Add& add) const {
+        const std::uint32_t samples = plan_.view.samples;
+        const Viewport& viewport = instance_.state->viewport;
+        const std::uint32_t corners = corners_of(instance_.geometry->topology);
+        if (corners == 3 && samples == 1)
+            return for_each_quad(set_up(part.corners[0], part.corners[1], part.corners[2], viewport), add);
+        if (corners == 3) return for_each_sampled_quad(part.corners, viewport, samples, add);
+        const float width = instance_.state->state->line_width;
+        const CoveredQuads covered =
+            corners == 1 ? quads_of_rectangle(PointSquare::pixels(part.corners), viewport.scissored())
+                         : quads_of_line(RasterLine(part.corners[0], part.corners[1], width), viewport.drawn());
+        const std::uint32_t all_samples = 0x11111111U >> 4 * (most_samples - samples);
+        for (const CoveredQuad& quad : covered.quads) add(quad.x, quad.y, quad.mask * all_samples);
+        return covered.tiles;
     }
 
     // The quads of the samples that are covered; four bits of the mask for each sample.
@@ -153,10 +170,17 @@ void transform_pass(FrontEndPlan& plan) {
         const PlannedPiece& piece = pieces[i];
         const PlannedVertices& run = plan.runs[piece.of];
         const glm::mat4 matrix = clip_matrix(plan.view, *run.model);
-        const AttributeReader position(plan.resources, *run.geometry->find(Semantic::position));
+        const AttributeReader position(plan.resources, *run.geometry->find(Semantic::position), run.instance);
         ScreenVertex* target = plan.vertices.data() + run.first_vertex + piece.first;
+        const PlannedState& state = plan.states[run.state];
         for (std::uint32_t vertex = 0; vertex < piece.count; ++vertex)
-            target[vertex] = transform_vertex(matrix, plan.viewport, position(run.used.first + piece.first + vertex));
+            target[vertex] = transform_vertex(matrix, state.viewport, position(run.used.first + piece.first + vertex));
+        if (state.state->clip_planes != 0) {
+            const UserPlanes planes(*state.state, glm::dmat4(plan.view.view) * glm::dmat4(*run.model));
+            ClipDistances* distances = plan.distances.data() + run.first_distance + piece.first;
+            for (std::uint32_t vertex = 0; vertex < piece.count; ++vertex)
+                distances[vertex] = planes.measure(position(run.used.first + piece.first + vertex), target[vertex]);
+        }
         plan.progress.end_piece();
     });
 }

@@ -53,6 +53,56 @@ void check_draw(const Resources& resources, const std::vector<Draw>& draws, std:
     require(draw.material < resources.materials.size(), "the number of an existing material");
     require(!draw.instances.empty(), "at least one instance");
     for (const glm::mat4& model : draw.instances) require(finite(model), "model matrices of finite numbers");
+    for (const VertexAttribute& attribute : resources.geometries[draw.geometry].attributes)
+        require(has_elements_for(resources, attribute, draw.instances.size()), "attributes for all its instances");
+}
+
+bool finite(const RasterState& state) {
+    bool good = std::isfinite(state.depth.bias_slope) && std::isfinite(state.depth.bias_constant) &&
+                std::isfinite(state.point_size) && std::isfinite(state.line_width);
+    for (std::uint32_t i = 0; i < most_clip_distances; ++i)
+        for (int axis = 0; axis < 4; ++axis) good &= std::isfinite(state.clip_plane[i][axis]);
+    return good;
+}
+
+void check_states(const FrontEndOptions& options, std::size_t draws) {
+    for (std::size_t i = 0; i < options.states.size(); ++i) {
+        const RasterState& state = options.states[i];
+        if (state.viewport && !is_usable(*state.viewport))
+            throw sim::InputError(fmt::format("state {}: expected a viewport of 1 to {} pixels a side at {} to {}, not "
+                                              "{}x{} at ({}, {})",
+                                              i, largest_viewport, -farthest_viewport, farthest_viewport,
+                                              state.viewport->width, state.viewport->height, state.viewport->x,
+                                              state.viewport->y));
+        if (!finite(state)) throw sim::InputError(fmt::format("state {}: expected finite numbers", i));
+    }
+    if (options.state_of_draw.empty()) return;
+    if (options.state_of_draw.size() != draws)
+        throw sim::InputError(
+            fmt::format("states: expected one of each of {} draws, not {}", draws, options.state_of_draw.size()));
+    for (const std::uint32_t number : options.state_of_draw)
+        if (number >= options.states.size())
+            throw sim::InputError(fmt::format("state {}: expected one of {} states", number, options.states.size()));
+}
+
+/// Whether vertices become the same under both.
+bool alike(const PlannedState& a, const PlannedState& b) {
+    return a.viewport == b.viewport && a.state->clip_planes == b.state->clip_planes &&
+           (a.state->clip_planes == 0 || a.state->clip_plane == b.state->clip_plane);
+}
+
+std::vector<PlannedState> plan_states(const View& view, std::span<const RasterState> states) {
+    static const RasterState ordinary;
+    if (states.empty()) states = {&ordinary, 1};
+    std::vector<PlannedState> planned;
+    for (const RasterState& state : states) {
+        PlannedState next{&state, Viewport(view.width, view.height, state), 0};
+        const auto first =
+            std::find_if(planned.begin(), planned.end(), [&](const PlannedState& other) { return alike(other, next); });
+        next.alike = static_cast<std::uint32_t>(first - planned.begin());
+        planned.push_back(next);
+    }
+    return planned;
 }
 
 /// Finds the vertices of instances. Thousands of small draws may read the same ones: those are transformed once, or the
@@ -61,37 +111,30 @@ class VertexRuns {
   public:
     explicit VertexRuns(std::vector<PlannedVertices>& runs) : runs_(runs) {}
 
-    std::uint32_t run_of(const Geometry& geometry, const glm::mat4& model, const VertexRange& used) {
+    std::uint32_t run_of(const Geometry& geometry, const glm::mat4& model, std::uint32_t instance, std::uint32_t state,
+                         const VertexRange& used) {
         const auto next = static_cast<std::uint32_t>(runs_.size());
-        std::uint32_t& last = last_.try_emplace(key_of(geometry, model), next).first->second;
+        std::uint32_t& last = last_.try_emplace(key_of(geometry, model, instance, state), next).first->second;
         if (last < next && join(runs_[last].used, used)) return last;
-        runs_.push_back({&geometry, &model, used, 0});
+        runs_.push_back({&geometry, &model, used, instance, state, 0, 0});
         return last = next;
-    }
-
-    /// Returns how many vertices there are.
-    std::uint64_t place() {
-        std::uint64_t vertices = 0;
-        for (PlannedVertices& run : runs_) {
-            run.first_vertex = vertices;
-            vertices += run.used.end - run.used.first;
-        }
-        return vertices;
     }
 
   private:
     using Key = std::tuple<std::uint32_t, std::uint64_t, std::uint32_t, ComponentType, std::uint8_t, bool,
-                           std::array<std::uint32_t, 16>>;
+                           std::uint32_t, std::array<std::uint32_t, 16>>;
 
     // Bits of the matrix: what transforms alike in every bit.
-    static Key key_of(const Geometry& geometry, const glm::mat4& model) {
+    static Key key_of(const Geometry& geometry, const glm::mat4& model, std::uint32_t instance, std::uint32_t state) {
         const VertexAttribute& position = *geometry.find(Semantic::position);
+        const bool advances = position.divisor != 0;
         return {position.buffer,
-                position.offset,
-                position.stride,
+                position.offset + (advances ? instance / position.divisor * std::uint64_t{position.stride} : 0),
+                advances ? 0 : position.stride,
                 position.type,
                 position.components,
                 position.normalized,
+                state,
                 std::bit_cast<std::array<std::uint32_t, 16>>(model)};
     }
 
@@ -112,14 +155,15 @@ class Planner {
     Planner(FrontEndPlan& plan, FragmentStream& stream, const std::vector<Draw>& draws)
         : plan_(plan), stream_(stream), draws_(draws), checked_(draws.size()), runs_(plan.runs) {}
 
-    void add_whole(std::uint32_t number) {
+    void add_whole(std::uint32_t number, std::uint32_t state) {
         check(number);
         const Draw& draw = draws_[number];
         const Geometry& geometry = plan_.resources.geometries[draw.geometry];
         auto known = used_.find(draw.geometry);
         if (known == used_.end()) known = used_.emplace(draw.geometry, used_vertices(plan_.resources, geometry)).first;
         for (std::uint32_t i = 0; i < draw.instances.size(); ++i)
-            add({.draw = number, .instance = i, .primitives = geometry.triangle_count()}, geometry, known->second);
+            add({.draw = number, .instance = i, .primitives = geometry.primitive_count()}, state, geometry,
+                known->second);
     }
 
     void add_parts(std::span<const DrawPart> parts) {
@@ -130,19 +174,34 @@ class Planner {
             const VertexRange own = used_vertices(plan_.resources, list, 3 * part.first_triangle, 3 * part.triangles);
             if (own.end > own.first) used = {std::min(used.first, own.first), std::max(used.end, own.end)};
         }
-        for (const DrawPart& part : parts)
+        for (std::size_t i = 0; i < parts.size(); ++i) {
+            const DrawPart& part = parts[i];
             add({.draw = part.draw,
                  .instance = part.instance,
                  .primitives = part.triangles,
                  .geometry = part.geometry,
                  .first_triangle = part.first_triangle},
-                plan_.resources.geometries[part.geometry], used_.at(part.geometry));
+                state_of(plan_.options, i), plan_.resources.geometries[part.geometry], used_.at(part.geometry));
+        }
     }
 
     void finish() {
         stream_.draws.shrink_to_fit();
         stream_.primitives.resize(primitives_);
-        plan_.vertices.resize(runs_.place());
+        std::uint64_t vertices = 0, distances = 0;
+        for (PlannedVertices& run : plan_.runs) {
+            const std::uint32_t count = run.used.end - run.used.first;
+            run.first_vertex = vertices;
+            run.first_distance = distances;
+            vertices += count;
+            if (plan_.states[run.state].state->clip_planes != 0) distances += count;
+        }
+        plan_.vertices.resize(vertices);
+        plan_.distances.resize(distances);
+    }
+
+    static std::uint32_t state_of(const FrontEndOptions& options, std::size_t i) {
+        return options.state_of_draw.empty() ? 0 : options.state_of_draw[i];
     }
 
   private:
@@ -154,13 +213,17 @@ class Planner {
         checked_[number] = true;
     }
 
-    void add(DrawRange range, const Geometry& geometry, const VertexRange& used) {
+    void add(DrawRange range, std::uint32_t number, const Geometry& geometry, const VertexRange& used) {
+        const PlannedState& state = plan_.states[number];
         const Draw& draw = draws_[range.draw];
         const Material& material = plan_.resources.materials[draw.material];
         const glm::mat4& model = draw.instances.at(range.instance);
         const VertexRange some = used.end == 0 ? VertexRange{} : used;
-        plan_.instances.push_back({&geometry, &material, &model, runs_.run_of(geometry, model, some),
-                                   culling_of(plan_.options.both_faces || material.double_sided, model)});
+        const Culling culling = state.state->culling == FaceCulling::by_material
+                                    ? culling_of(plan_.options.both_faces || material.double_sided, model)
+                                    : culling_of(*state.state);
+        plan_.instances.push_back({&geometry, &material, &model, &state, range.instance,
+                                   runs_.run_of(geometry, model, range.instance, state.alike, some), culling});
         if (primitives_ + range.primitives > std::numeric_limits<std::uint32_t>::max())
             throw sim::InputError(
                 fmt::format("draw {} \"{}\": expected at most 2^32 - 1 primitives in a pass", range.draw, draw.name));
@@ -180,13 +243,15 @@ class Planner {
 
 template <class Add>
 FragmentStream rasterize_planned(const Resources& resources, const std::vector<Draw>& draws, const View& view,
-                                 const FrontEndOptions& options, const Add& add) {
+                                 const FrontEndOptions& options, std::size_t parts, const Add& add) {
     check_view(view);
+    check_states(options, parts);
     FragmentStream stream;
     stream.width = view.width;
     stream.height = view.height;
     stream.samples = view.samples;
     FrontEndPlan plan(resources, view, options);
+    plan.states = plan_states(view, options.states);
     {
         Planner planner(plan, stream, draws);
         add(planner);
@@ -224,14 +289,15 @@ void FrontEndProgress::end_piece() {
 
 FragmentStream rasterize(const Resources& resources, const std::vector<Draw>& draws,
                          std::span<const std::uint32_t> which, const View& view, const FrontEndOptions& options) {
-    return rasterize_planned(resources, draws, view, options, [which](Planner& planner) {
-        for (const std::uint32_t number : which) planner.add_whole(number);
+    return rasterize_planned(resources, draws, view, options, which.size(), [&](Planner& planner) {
+        for (std::size_t i = 0; i < which.size(); ++i) planner.add_whole(which[i], Planner::state_of(options, i));
     });
 }
 
 FragmentStream rasterize_parts(const Resources& resources, const std::vector<Draw>& draws,
                                std::span<const DrawPart> parts, const View& view, const FrontEndOptions& options) {
-    return rasterize_planned(resources, draws, view, options, [parts](Planner& planner) { planner.add_parts(parts); });
+    return rasterize_planned(resources, draws, view, options, parts.size(),
+                             [parts](Planner& planner) { planner.add_parts(parts); });
 }
 
 } // namespace pipeline

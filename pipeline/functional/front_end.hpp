@@ -1,12 +1,14 @@
 // The functional front end: everything up to the shaded fragment, as a pure function of draws and view.
 //
-// Modelled: vertex fetch and transform (each vertex once per instance), culling, clipping, rasterization, depth
-// interpolation, shading, alpha test. Not modelled here: time, and whatever depends on other fragments.
+// Modelled: vertex fetch and transform (each vertex once per instance), culling, clipping, viewport and scissor,
+// rasterization, depth interpolation, bias and clamp, shading, alpha test. Not modelled here: time, and whatever
+// depends on other fragments.
 #pragma once
 
 #include "pipeline/draw.hpp"
 #include "pipeline/fragment_stream.hpp"
 #include "pipeline/frame.hpp"
+#include "pipeline/raster_state.hpp"
 
 #include <atomic>
 #include <functional>
@@ -18,9 +20,16 @@ namespace pipeline {
 struct FrontEndOptions {
     bool colours = true; ///< fill FragmentStream::colours
     FragmentColour fragment_colour = FragmentColour::lit;
-    bool textures = true;                    ///< read textures; without, materials have their base colour only
-    bool both_faces = false;                 ///< keep triangles that face away, whatever their material says
-    bool alpha_test = true;                  ///< discard fragments of masked materials
+    bool textures = true;    ///< read textures; without, materials have their base colour only
+    bool both_faces = false; ///< keep triangles that face away, whatever their material says
+    bool alpha_test = true;  ///< discard fragments of masked materials
+    /// State of the fixed-function units. `state_of_draw` is parallel to the draws, or parts, that are rasterized;
+    /// empty: all have states[0]. Without states they have RasterState{}.
+    std::span<const RasterState> states;
+    std::span<const std::uint32_t> state_of_draw;
+    /// The smallest step of the depth format, by which a constant bias counts; 0: that of a 32-bit float at the
+    /// greatest depth of each triangle.
+    double depth_step = 0x1p-24;
     unsigned threads = 0;                    ///< 0 = all cores; the result is the same for any number
     const std::atomic<bool>* stop = nullptr; ///< when it becomes true, sim::Interrupted is thrown
     std::function<void(double)> progress;    ///< called with the share done, 0 to 1, never by two threads at once
@@ -29,8 +38,8 @@ struct FrontEndOptions {
 /// Rasterizes and shades the given draws, in the given order, as seen by `view`.
 ///
 /// `resources` must satisfy Resources::validate(). `which` holds indices into `draws`; Triangle::draw and
-/// DrawRange::draw are such indices too. Throws sim::InputError when the view, an index in `which`, or a draw is
-/// unusable, and when the result has more primitives, triangles or quads than 32-bit numbers can count.
+/// DrawRange::draw are such indices too. Throws sim::InputError when the view, an index in `which`, a draw
+/// or state is unusable, and when the result has more primitives, triangles or quads than 32-bit numbers can count.
 FragmentStream rasterize(const Resources& resources, const std::vector<Draw>& draws,
                          std::span<const std::uint32_t> which, const View& view, const FrontEndOptions& options = {});
 

@@ -10,12 +10,22 @@
 
 namespace pipeline {
 
-/// Vertices that are transformed by one matrix, for all instances whose indices lie among them.
+/// State of some draws.
+struct PlannedState {
+    const RasterState* state = nullptr;
+    Viewport viewport;
+    std::uint32_t alike = 0; ///< number of the first state under which vertices become the same
+};
+
+/// Vertices that are transformed by one matrix under one state, for all instances whose indices lie among them.
 struct PlannedVertices {
     const Geometry* geometry = nullptr; ///< one of those that read them
     const glm::mat4* model = nullptr;
     VertexRange used;
-    std::uint64_t first_vertex = 0; ///< where they lie in FrontEndPlan::vertices
+    std::uint32_t instance = 0;       ///< one of those that read them
+    std::uint32_t state = 0;          ///< of FrontEndPlan::states
+    std::uint64_t first_vertex = 0;   ///< where they lie in FrontEndPlan::vertices
+    std::uint64_t first_distance = 0; ///< ... in FrontEndPlan::distances, where planes of the user cut
 };
 
 /// One instance of one draw.
@@ -23,6 +33,8 @@ struct PlannedInstance {
     const Geometry* geometry = nullptr;
     const Material* material = nullptr;
     const glm::mat4* model = nullptr;
+    const PlannedState* state = nullptr;
+    std::uint32_t instance = 0;
     std::uint32_t run = 0; ///< of FrontEndPlan::runs
     Culling culling = Culling::none;
 };
@@ -56,30 +68,47 @@ struct FrontEndPlan {
     const Resources& resources;
     const View& view;
     const FrontEndOptions& options;
-    Viewport viewport;
     FrontEndProgress progress;
+    std::vector<PlannedState> states;       ///< at least one; parallel to FrontEndOptions::states
     std::vector<PlannedInstance> instances; ///< parallel to FragmentStream::draws
     std::vector<PlannedVertices> runs;
     std::vector<ScreenVertex> vertices;
+    std::vector<ClipDistances> distances;
 
     FrontEndPlan(const Resources& resources_, const View& view_, const FrontEndOptions& options_)
-        : resources(resources_),
-          view(view_),
-          options(options_),
-          viewport(view_.width, view_.height),
-          progress(options_) {}
+        : resources(resources_), view(view_), options(options_), progress(options_) {}
 
-    /// The three transformed vertices of a primitive.
-    std::array<const ScreenVertex*, 3> corners(const PlannedInstance& instance,
-                                               const std::array<std::uint32_t, 3>& vertices_of_primitive) const {
-        const ScreenVertex* base = vertices.data() + runs[instance.run].first_vertex;
-        const std::uint32_t first = runs[instance.run].used.first;
-        return {base + (vertices_of_primitive[0] - first), base + (vertices_of_primitive[1] - first),
-                base + (vertices_of_primitive[2] - first)};
+    /// What becomes of a primitive of these vertices.
+    void cull_and_clip(const PlannedInstance& instance, const std::array<std::uint32_t, 3>& vertices_of_primitive,
+                       PrimitiveParts& parts) const {
+        const PlannedState& state = *instance.state;
+        const PrimitiveCorners whole = corners(instance, vertices_of_primitive);
+        switch (corners_of(instance.geometry->topology)) {
+        case 1:
+            return cull_point(state.viewport, *state.state, whole, parts);
+        case 2:
+            return cull_and_clip_line(state.viewport, *state.state, whole, parts);
+        default:
+            return pipeline::cull_and_clip(state.viewport, instance.culling, whole, parts);
+        }
+    }
+
+  private:
+    PrimitiveCorners corners(const PlannedInstance& instance,
+                             const std::array<std::uint32_t, 3>& vertices_of_primitive) const {
+        const PlannedVertices& run = runs[instance.run];
+        const bool cut = instance.state->state->clip_planes != 0;
+        PrimitiveCorners result;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::uint32_t place = vertices_of_primitive[i] - run.used.first;
+            result.vertices[i] = vertices.data() + run.first_vertex + place;
+            if (cut) result.distances[i] = distances.data() + run.first_distance + place;
+        }
+        return result;
     }
 };
 
-/// Fills plan.vertices.
+/// Fills plan.vertices and plan.distances.
 void transform_pass(FrontEndPlan& plan);
 
 /// Fills the stream's primitives, triangles and quads (all but Quad::alive), and the quad counts of its draws.

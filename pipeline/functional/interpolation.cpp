@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 namespace pipeline {
 
@@ -84,10 +85,19 @@ Lanes DepthPlane::at(std::int32_t x, std::int32_t y, SampleOffset from_centre) c
     const std::array<double, 4> depths{here, here + step_x_, here + step_y_, here + (step_x_ + step_y_)};
     Lanes result;
     // Clamped before it is rounded: the plane of a sliver may be out of the range of binary32.
-    for (std::size_t lane = 0; lane < 4; ++lane)
-        result[lane] =
-            static_cast<float>(std::clamp(depths[lane], static_cast<double>(least_), static_cast<double>(greatest_)));
+    for (std::size_t lane = 0; lane < 4; ++lane) {
+        const double depth = std::clamp(depths[lane], static_cast<double>(least_), static_cast<double>(greatest_));
+        result[lane] = static_cast<float>(std::clamp(depth + bias_, 0.0, 1.0));
+    }
     return result;
+}
+
+void DepthPlane::add_bias(const DepthState& state, double step) {
+    const auto slope = static_cast<double>(state.bias_slope), constant = static_cast<double>(state.bias_constant);
+    constexpr int fraction_bits = std::numeric_limits<float>::digits - 1;
+    if (step == 0.0 && greatest_ > 0.0F) step = std::ldexp(1.0, std::ilogb(greatest_) - fraction_bits);
+    bias_ = constant * step;
+    if (slope != 0.0) bias_ += slope * std::max(std::fabs(step_x_), std::fabs(step_y_));
 }
 
 AttributePlanes::AttributePlanes(const RasterTriangle& raster, const std::array<ScreenVertex, 3>& corners) {

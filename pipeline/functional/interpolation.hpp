@@ -17,10 +17,14 @@
 
 namespace pipeline {
 
-/// Window depth over a triangle.
+/// Window depth over a triangle, with the bias of a state.
 class DepthPlane {
   public:
     DepthPlane(const RasterTriangle& raster, const std::array<ScreenVertex, 3>& corners);
+
+    /// Adds the bias of a state (OpenGL 4.5, section 14.6.5). `step` is the smallest one of the depth format; 0: that
+    /// of a 32-bit float at the greatest depth of the corners.
+    void add_bias(const DepthState& state, double step);
 
     /// Depth in [0,1] at the quad whose top left pixel is (x, y), also where pixels are not covered; at the samples
     /// that lie there from the centres.
@@ -30,6 +34,7 @@ class DepthPlane {
     double x_, y_, depth_; ///< of corner 0, pixels from the centre of pixel (0, 0)
     double step_x_ = 0, step_y_ = 0;
     float least_, greatest_;
+    double bias_ = 0;
 };
 
 /// Shares of corners 1 and 2 in the attributes at each pixel; the rest is corner 0's.

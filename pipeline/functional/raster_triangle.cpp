@@ -8,8 +8,6 @@ namespace pipeline {
 
 namespace {
 
-constexpr std::int64_t half_pixel = subpixel_one / 2;
-
 struct Point {
     std::int64_t x, y;
 };
@@ -28,16 +26,14 @@ void set_up_edge(RasterTriangle& triangle, std::size_t edge, const Point& from, 
 void bound(RasterTriangle& triangle, const std::array<Point, 3>& corners) {
     const auto [min_x, max_x] = std::minmax({corners[0].x, corners[1].x, corners[2].x});
     const auto [min_y, max_y] = std::minmax({corners[0].y, corners[1].y, corners[2].y});
-    // Coordinates count from the centre of pixel 0, so the viewport begins half a pixel before it.
-    triangle.off_screen = max_x < -half_pixel || max_y < -half_pixel ||
-                          min_x > std::int64_t{triangle.width} * subpixel_one - half_pixel ||
-                          min_y > std::int64_t{triangle.height} * subpixel_one - half_pixel;
     const auto pixel_at_or_after = [](std::int64_t v) { return (v + subpixel_one - 1) >> subpixel_bits; };
     const auto pixel_at_or_before = [](std::int64_t v) { return v >> subpixel_bits; };
-    triangle.first_x = static_cast<std::int32_t>(std::max<std::int64_t>(pixel_at_or_after(min_x), 0));
-    triangle.first_y = static_cast<std::int32_t>(std::max<std::int64_t>(pixel_at_or_after(min_y), 0));
-    triangle.last_x = static_cast<std::int32_t>(std::min<std::int64_t>(pixel_at_or_before(max_x), triangle.width - 1));
-    triangle.last_y = static_cast<std::int32_t>(std::min<std::int64_t>(pixel_at_or_before(max_y), triangle.height - 1));
+    const PixelBounds& drawn = triangle.drawn;
+    const auto number = [](std::int64_t pixel) { return static_cast<std::int32_t>(pixel); };
+    triangle.first_x = std::max(number(pixel_at_or_after(min_x)), drawn.left);
+    triangle.first_y = std::max(number(pixel_at_or_after(min_y)), drawn.top);
+    triangle.last_x = std::min(number(pixel_at_or_before(max_x)), drawn.right - 1);
+    triangle.last_y = std::min(number(pixel_at_or_before(max_y)), drawn.bottom - 1);
 }
 
 } // namespace
@@ -51,8 +47,7 @@ std::int64_t signed_area(const ScreenVertex& a, const ScreenVertex& b, const Scr
 RasterTriangle set_up(const ScreenVertex& a, const ScreenVertex& b, const ScreenVertex& c, const Viewport& viewport,
                       SampleOffset from_centre) {
     RasterTriangle triangle;
-    triangle.width = static_cast<std::int32_t>(viewport.width());
-    triangle.height = static_cast<std::int32_t>(viewport.height());
+    triangle.drawn = viewport.drawn();
     triangle.area = signed_area(a, b, c);
     triangle.reversed = triangle.area < 0;
     CHECK(triangle.area != 0);

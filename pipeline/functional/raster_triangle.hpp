@@ -26,18 +26,18 @@ struct RasterTriangle {
     std::array<std::int64_t, 3> step_y;
     std::array<std::int64_t, 3> bias; ///< -1 where points on the edge are outside
     std::int64_t area = 0;            ///< twice the area in sub-pixel units squared; > 0
-    /// Pixels whose centres lie in the bounding box and in the viewport, both ends included.
+    /// Pixels whose centres lie in the bounding box and that may be drawn, both ends included.
     std::int32_t first_x = 0, last_x = -1, first_y = 0, last_y = -1;
-    std::int32_t width = 0, height = 0; ///< of the viewport
-    bool reversed = false;              ///< corners 1 and 2 were exchanged to make the area positive
-    bool off_screen = false;            ///< the bounding box does not touch the viewport
+    PixelBounds drawn;     ///< the pixels that may be drawn
+    bool reversed = false; ///< corners 1 and 2 were exchanged to make the area positive
 };
 
-// Why 64 bits are enough, and binary64 holds every edge value exactly: coordinates stay within the guard band and half
-// the largest viewport of the origin; a difference takes one bit more, an edge function sums two products of
+// Why 64 bits are enough, and binary64 holds every edge value exactly: coordinates stay within the guard band around
+// the middle of the farthest viewport; a difference takes one bit more, an edge function sums two products of
 // differences, and the walk leaves the bounding box by less than a tile, samples included.
 inline constexpr std::int64_t largest_coordinate =
-    (static_cast<std::int64_t>(guard_band_pixels * 1.001F) + largest_viewport / 2 + 1) * subpixel_one;
+    (static_cast<std::int64_t>(guard_band_pixels * 1.001F) + farthest_viewport + largest_viewport / 2 + 1) *
+    subpixel_one;
 inline constexpr std::int64_t largest_difference = 2 * largest_coordinate + std::int64_t{2} * tile_size * subpixel_one;
 inline constexpr std::int64_t largest_edge_function = 2 * largest_difference * largest_difference;
 static_assert(largest_coordinate < (std::int64_t{1} << 24));

@@ -33,10 +33,10 @@ glm::dmat3 normal_matrix(const glm::mat4& model_to_eye) {
 }
 
 std::optional<AttributeReader> reader(const Resources& resources, const Geometry& geometry, bool wanted,
-                                      Semantic semantic) {
+                                      Semantic semantic, std::uint32_t instance) {
     const VertexAttribute* attribute = wanted ? geometry.find(semantic) : nullptr;
     if (attribute == nullptr) return std::nullopt;
-    return AttributeReader(resources, *attribute);
+    return AttributeReader(resources, *attribute, instance);
 }
 
 float lambert(float cosine) { return ambient_light + (1.0F - ambient_light) * cosine; }
@@ -44,9 +44,9 @@ float lambert(float cosine) { return ambient_light + (1.0F - ambient_light) * co
 } // namespace
 
 FragmentShader::FragmentShader(const Resources& resources, const Geometry& geometry, const Material& material,
-                               const glm::mat4& model_to_eye, const ShaderOptions& options)
+                               const glm::mat4& model_to_eye, const ShaderOptions& options, std::uint32_t instance)
     : options_(options),
-      positions_(resources, *geometry.find(Semantic::position)),
+      positions_(resources, *geometry.find(Semantic::position), instance),
       model_to_eye_(model_to_eye),
       normal_matrix_(normal_matrix(model_to_eye)),
       texcoord_matrix_(material.uv_transform),
@@ -55,13 +55,15 @@ FragmentShader::FragmentShader(const Resources& resources, const Geometry& geome
       discards_(options.alpha_test && material.alpha_mode == AlphaMode::mask),
       lit_(options.colours && options.fragment_colour == FragmentColour::lit && !material.unlit),
       cosine_(options.colours && options.fragment_colour == FragmentColour::cosine),
+      flat_(material.flat),
       keeps_alpha_(material.transparent()) {
     const bool reads_colour = options.fragment_colour == FragmentColour::lit || discards_;
-    normals_ = reader(resources, geometry, lit_ || cosine_, Semantic::normal);
-    colours_ = reader(resources, geometry, reads_colour, Semantic::colour);
-    texcoords_ = reader(resources, geometry, options.textures && reads_colour && material.base_texture >= 0,
-                        texcoord(material.texcoord));
-    if (texcoords_ && needed()) sampler_.emplace(resources.textures[static_cast<std::size_t>(material.base_texture)]);
+    normals_ = reader(resources, geometry, lit_ || cosine_, Semantic::normal, instance);
+    colours_ = reader(resources, geometry, reads_colour, Semantic::colour, instance);
+    const bool textured = options.textures && reads_colour && material.base_texture >= 0;
+    texcoords_ = reader(resources, geometry, textured && !options.sprites, texcoord(material.texcoord), instance);
+    if ((texcoords_ || (textured && options.sprites)) && needed())
+        sampler_.emplace(resources.textures[static_cast<std::size_t>(material.base_texture)]);
 }
 
 ShaderCorner FragmentShader::corner(std::uint32_t vertex) const {
@@ -72,7 +74,7 @@ ShaderCorner FragmentShader::corner(std::uint32_t vertex) const {
         result.normal = glm::vec3(normal_matrix_ * normal);
     }
     if (colours_) result.colour = bounded_vector((*colours_)(vertex), largest_colour);
-    if (sampler_) {
+    if (texcoords_) {
         const glm::vec4 raw = (*texcoords_)(vertex);
         result.texcoord = bounded_vector(glm::vec2(texcoord_matrix_ * glm::vec3(raw.x, raw.y, 1.0F)), largest_texcoord);
     }
@@ -87,9 +89,14 @@ glm::vec3 FragmentShader::face_normal(const std::array<std::uint32_t, 3>& vertic
 }
 
 ShaderTriangle FragmentShader::triangle(const std::array<std::uint32_t, 3>& vertices,
-                                        const std::array<glm::vec3, 3>* weights) const {
+                                        const std::array<glm::vec3, 3>* weights, std::size_t provoking) const {
     ShaderTriangle result;
     for (std::size_t i = 0; i < 3; ++i) result.corners[i] = corner(vertices[i]);
+    if (flat_)
+        for (ShaderCorner& corner : result.corners) {
+            corner.normal = result.corners[provoking].normal;
+            corner.colour = result.corners[provoking].colour;
+        }
     if ((lit_ || cosine_) && !normals_) result.face_normal = face_normal(vertices);
     if (lit_ && result.face_normal != glm::vec3(0.0F)) result.face_light = lambert(std::fabs(result.face_normal.z));
     if (weights == nullptr) return result;

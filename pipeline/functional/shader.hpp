@@ -32,6 +32,7 @@ struct ShaderOptions {
     bool perspective = true; ///< the directions to the eye meet there; else they are parallel
     bool textures = true;
     bool alpha_test = true;
+    bool sprites = false; ///< texture coordinates come from the rasterizer, not from vertices
 };
 
 /// Attributes at a corner of a triangle.
@@ -53,7 +54,7 @@ struct ShaderTriangle {
 class FragmentShader {
   public:
     FragmentShader(const Resources& resources, const Geometry& geometry, const Material& material,
-                   const glm::mat4& model_to_eye, const ShaderOptions& options);
+                   const glm::mat4& model_to_eye, const ShaderOptions& options, std::uint32_t instance = 0);
 
     /// True when shade() must be called: a colour is wanted, or fragments may be discarded.
     bool needed() const { return options_.colours || discards_; }
@@ -61,8 +62,9 @@ class FragmentShader {
     bool samples() const { return sampler_.has_value(); }
 
     /// Attributes of a part of the primitive with these vertices. `weights`: see PrimitivePart; null when not clipped.
-    ShaderTriangle triangle(const std::array<std::uint32_t, 3>& vertices,
-                            const std::array<glm::vec3, 3>* weights) const;
+    /// `provoking`: the corner whose colour and normal a flat material takes.
+    ShaderTriangle triangle(const std::array<std::uint32_t, 3>& vertices, const std::array<glm::vec3, 3>* weights,
+                            std::size_t provoking = 2) const;
 
     struct Output {
         std::array<glm::vec4, 4> colours; ///< linear RGBA; 0 where not covered
@@ -93,6 +95,7 @@ class FragmentShader {
     bool discards_; ///< the material is alpha-tested and somebody asks
     bool lit_;
     bool cosine_;
+    bool flat_;
     bool keeps_alpha_; ///< the surface blends; others are opaque
 };
 

@@ -9,6 +9,7 @@
 #include "pipeline/functional/front_end_passes.hpp"
 #include "pipeline/functional/interpolation.hpp"
 #include "pipeline/functional/parallel.hpp"
+#include "pipeline/functional/points_lines.hpp"
 #include "pipeline/functional/raster_triangle.hpp"
 #include "pipeline/functional/shader.hpp"
 
@@ -22,19 +23,28 @@ namespace {
 
 constexpr std::size_t quads_per_piece = 8192;
 
-ShaderOptions shader_options(const FrontEndPlan& plan) {
+bool has_sprites(const PlannedInstance& instance) {
+    return instance.geometry->topology == Topology::points && instance.state->state->point_sprites;
+}
+
+ShaderOptions shader_options(const FrontEndPlan& plan, const PlannedInstance& instance) {
     const FrontEndOptions& options = plan.options;
     const bool flat = options.fragment_colour == FragmentColour::flat;
     return {.colours = options.colours,
             .fragment_colour = options.fragment_colour,
             .perspective = plan.view.projection[2][3] != 0.0F,
             .textures = options.textures && !flat,
-            .alpha_test = options.alpha_test && !flat};
+            .alpha_test = options.alpha_test && !flat,
+            .sprites = has_sprites(instance)};
 }
 
 FragmentShader make_shader(const FrontEndPlan& plan, const PlannedInstance& instance) {
-    return {plan.resources, *instance.geometry, *instance.material, plan.view.view * *instance.model,
-            shader_options(plan)};
+    return {plan.resources,
+            *instance.geometry,
+            *instance.material,
+            plan.view.view * *instance.model,
+            shader_options(plan, instance),
+            instance.instance};
 }
 
 /// True when some draw's shader reads a texture.
@@ -79,13 +89,40 @@ class Shading {
         if (range_ == nullptr || primitive - range_->first_primitive >= range_->primitives) enter_instance(primitive);
 
         const auto vertices = (*reader_)(primitive - range_->first_primitive);
-        cull_and_clip(plan_.viewport, instance_->culling, plan_.corners(*instance_, vertices), parts_);
+        plan_.cull_and_clip(*instance_, vertices, parts_);
         const PrimitivePart& part = parts_.parts[number - stream_.primitives[primitive].first_triangle];
-        raster_ = set_up(part.corners[0], part.corners[1], part.corners[2], plan_.viewport);
-        depth_.emplace(raster_, part.corners);
+        set_up_part(part);
         if (!shader_->needed()) return;
-        attributes_.emplace(raster_, part.corners);
-        triangle_ = shader_->triangle(vertices, parts_.clipped ? &part.weights : nullptr);
+        const RasterState& state = *instance_->state->state;
+        triangle_ = shader_->triangle(vertices, parts_.clipped ? &part.weights : nullptr,
+                                      reader_->provoking(primitive - range_->first_primitive, state.provoking));
+        if (!has_sprites(*instance_)) return;
+        const std::array<glm::vec2, 3> sprite{{{0.0F, 0.0F}, {1.0F, 0.0F}, {0.0F, 1.0F}}};
+        for (std::size_t i = 0; i < 3; ++i) triangle_.corners[i].texcoord = sprite[i];
+    }
+
+    void set_up_part(const PrimitivePart& part) {
+        const PlannedState& state = *instance_->state;
+        corners_ = corners_of(instance_->geometry->topology);
+        if (corners_ == 2) {
+            line_.emplace(RasterLine(part.corners[0], part.corners[1], state.state->line_width), part.corners[0],
+                          part.corners[1]);
+            return;
+        }
+        raster_ = set_up(part.corners[0], part.corners[1], part.corners[2], state.viewport);
+        depth_.emplace(raster_, part.corners);
+        if (corners_ == 3) depth_->add_bias(state.state->depth, plan_.options.depth_step);
+        if (shader_->needed()) attributes_.emplace(raster_, part.corners);
+    }
+
+    Lanes depths(std::int32_t x, std::int32_t y, std::uint32_t sample) const {
+        return corners_ == 2 ? line_->depths(x, y) : depth_->at(x, y, pattern_[sample]);
+    }
+
+    CornerWeights weights(std::int32_t x, std::int32_t y, unsigned covered, std::span<const Quad> group) const {
+        if (corners_ == 2) return line_->weights(x, y);
+        if (pattern_.size() == 1 || corners_ == 1) return attributes_->at(x, y, covered);
+        return attributes_->at(x, y, covered, centroids(x, y, group));
     }
 
     void shade(std::size_t first, std::span<Quad> group) {
@@ -94,14 +131,12 @@ class Shading {
         unsigned covered = 0;
         for (std::size_t n = 0; n < group.size(); ++n) {
             Quad& quad = group[n];
-            stream_.depths[first + n] = depth_->at(x, y, pattern_[quad.sample]);
+            stream_.depths[first + n] = depths(x, y, quad.sample);
             quad.alive = quad.covered;
             covered |= quad.covered;
         }
         if (!shader_->needed()) return;
-        const CornerWeights weights = pattern_.size() == 1 ? attributes_->at(x, y, covered)
-                                                           : attributes_->at(x, y, covered, centroids(x, y, group));
-        const FragmentShader::Output output = shader_->shade(triangle_, weights, covered);
+        const FragmentShader::Output output = shader_->shade(triangle_, weights(x, y, covered, group), covered);
         for (std::size_t n = 0; n < group.size(); ++n) {
             group[n].alive &= output.alive;
             if (!stream_.colours.empty()) stream_.colours[first + n] = output.colours;
@@ -132,6 +167,8 @@ class Shading {
     RasterTriangle raster_{};
     std::optional<DepthPlane> depth_;
     std::optional<AttributePlanes> attributes_;
+    std::optional<LinePlane> line_;
+    std::uint32_t corners_ = 3; ///< of the present primitive
     PrimitiveParts parts_;
     ShaderTriangle triangle_;
     std::uint32_t current_triangle_ = 0;

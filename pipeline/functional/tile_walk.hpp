@@ -18,6 +18,16 @@ struct EdgeValues {
     EdgeValues plus(const EdgeValues& step) const { return {e0 + step.e0, e1 + step.e1, e2 + step.e2}; }
 };
 
+/// Which pixels of a quad lie within bounds that may begin and end in the middle of it.
+inline unsigned pixels_of_quad(const PixelBounds& bounds, std::int32_t x, std::int32_t y) {
+    unsigned mask = 15U;
+    if (x < bounds.left) mask &= 10U;
+    if (y < bounds.top) mask &= 12U;
+    if (x + 1 >= bounds.right) mask &= 5U;
+    if (y + 1 >= bounds.bottom) mask &= 3U;
+    return mask;
+}
+
 /// First and last of some tiles; none where first > last.
 struct TileSpan {
     std::int64_t first = 0, last = -1;
@@ -81,10 +91,12 @@ class TileWalk {
     }
 
     void walk_full(std::int32_t tile_x, std::int32_t tile_y) {
-        const std::int32_t end_x = std::min((tile_x + 1) * tile_size, t_.width);
-        const std::int32_t end_y = std::min((tile_y + 1) * tile_size, t_.height);
-        for (std::int32_t y = tile_y * tile_size; y < end_y; y += 2)
-            for (std::int32_t x = tile_x * tile_size; x < end_x; x += 2) emit_quad(x, y, 15U);
+        const std::int32_t begin_x = std::max(tile_x * tile_size, t_.drawn.left & ~1);
+        const std::int32_t begin_y = std::max(tile_y * tile_size, t_.drawn.top & ~1);
+        const std::int32_t end_x = std::min((tile_x + 1) * tile_size, t_.drawn.right);
+        const std::int32_t end_y = std::min((tile_y + 1) * tile_size, t_.drawn.bottom);
+        for (std::int32_t y = begin_y; y < end_y; y += 2)
+            for (std::int32_t x = begin_x; x < end_x; x += 2) emit_quad(x, y, 15U);
     }
 
     void walk_partial(std::int32_t tile_x, std::int32_t tile_y) {
@@ -108,10 +120,8 @@ class TileWalk {
                (here.plus(down_).covered() ? 4U : 0U) | (here.plus(diagonal_).covered() ? 8U : 0U);
     }
 
-    /// Viewports of odd size end in the middle of a quad.
     void emit_quad(std::int32_t x, std::int32_t y, unsigned mask) {
-        if (x + 1 == t_.width) mask &= 5U;
-        if (y + 1 == t_.height) mask &= 3U;
+        mask &= pixels_of_quad(t_.drawn, x, y);
         if (mask != 0) emit_(x, y, mask);
     }
 

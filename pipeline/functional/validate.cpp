@@ -59,9 +59,10 @@ void validate_attribute(const Resources& resources, const Geometry& geometry, co
     complain.require(attribute.stride >= size, "a stride of at least {} bytes in {}, not {}", size, name,
                      attribute.stride);
     const std::uint64_t available = resources.buffers[attribute.buffer].bytes.size();
-    complain.require(fits(attribute.offset, geometry.vertex_count, attribute.stride, size, available),
-                     "{} ({} elements of {} bytes, stride {}, from offset {}) within {} bytes", name,
-                     geometry.vertex_count, size, attribute.stride, attribute.offset, available);
+    const std::uint32_t elements = attribute.divisor == 0 ? geometry.vertex_count : 1;
+    complain.require(fits(attribute.offset, elements, attribute.stride, size, available),
+                     "{} ({} elements of {} bytes, stride {}, from offset {}) within {} bytes", name, elements, size,
+                     attribute.stride, attribute.offset, available);
 }
 
 void validate_indices(const Resources& resources, const Geometry& geometry, const Complaint& complain) {
@@ -104,8 +105,8 @@ bool indices_fit(const Resources& resources, const Geometry& geometry) {
 }
 
 void validate_geometry(const Resources& resources, const Geometry& geometry, const Complaint& complain) {
-    complain.require(static_cast<unsigned>(geometry.topology) <= static_cast<unsigned>(Topology::triangle_fan),
-                     "a known topology, not {}", static_cast<unsigned>(geometry.topology));
+    complain.require(geometry.topology <= last_topology, "a known topology, not {}",
+                     static_cast<unsigned>(geometry.topology));
     complain.require(geometry.find(Semantic::position) != nullptr, "a position attribute");
     for (const VertexAttribute& attribute : geometry.attributes) {
         complain.require(geometry.find(attribute.semantic) == &attribute, "each semantic once");

@@ -75,21 +75,28 @@ glm::vec4 AttributeReader::converted(const std::byte* source) const {
     return floats(source);
 }
 
+bool has_elements_for(const Resources& resources, const VertexAttribute& attribute, std::uint64_t instances) {
+    if (attribute.divisor == 0 || instances == 0) return true;
+    const std::uint64_t bytes = resources.buffers[attribute.buffer].bytes.size();
+    if (attribute.offset > bytes || attribute.bytes() > bytes - attribute.offset) return false;
+    return (instances - 1) / attribute.divisor <= (bytes - attribute.offset - attribute.bytes()) / attribute.stride;
+}
+
 std::vector<IndexRun> index_runs(const Resources& resources, const Geometry& geometry) {
     const IndexReader index(resources, geometry);
     std::vector<IndexRun> runs;
     std::uint32_t begin = 0;
-    std::uint32_t triangles = 0;
+    std::uint32_t primitives = 0;
     for (std::uint64_t i = 0; i <= geometry.index_count; ++i) {
         const auto place = static_cast<std::uint32_t>(i);
         if (i < geometry.index_count && index(place) != restart_index(geometry.index_type)) continue;
-        if (const std::uint32_t made = triangles_of(geometry.topology, place - begin); made > 0) {
-            runs.push_back({begin, triangles});
-            triangles += made;
+        if (const std::uint32_t made = primitives_of(geometry.topology, place - begin); made > 0) {
+            runs.push_back({begin, primitives});
+            primitives += made;
         }
         begin = place + 1;
     }
-    runs.push_back({geometry.index_count, triangles});
+    runs.push_back({geometry.index_count, primitives});
     return runs;
 }
 

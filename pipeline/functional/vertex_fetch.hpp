@@ -5,6 +5,7 @@
 
 #include "pipeline/draw.hpp"
 #include "pipeline/functional/number_formats.hpp"
+#include "pipeline/raster_state.hpp"
 
 #include <algorithm>
 #include <array>
@@ -23,12 +24,14 @@ namespace pipeline {
 /// components of b = 10, 10, 10 and 2 bits.
 class AttributeReader {
   public:
-    AttributeReader(const Resources& resources, const VertexAttribute& attribute)
-        : AttributeReader(resources.buffers[attribute.buffer].bytes.data(), attribute) {}
+    /// `instance` counts where the attribute has a divisor: all elements are then the one of this instance.
+    AttributeReader(const Resources& resources, const VertexAttribute& attribute, std::uint32_t instance = 0)
+        : AttributeReader(resources.buffers[attribute.buffer].bytes.data(), attribute, instance) {}
     /// From the buffer that starts at `buffer`, whatever number the attribute gives.
-    AttributeReader(const std::byte* buffer, const VertexAttribute& attribute)
-        : first_(buffer + attribute.offset),
-          stride_(attribute.stride),
+    AttributeReader(const std::byte* buffer, const VertexAttribute& attribute, std::uint32_t instance = 0)
+        : first_(buffer + attribute.offset +
+                 (attribute.divisor == 0 ? 0 : std::uint64_t{attribute.stride} * (instance / attribute.divisor))),
+          stride_(attribute.divisor == 0 ? attribute.stride : 0),
           type_(attribute.type),
           components_(attribute.components),
           normalized_(attribute.normalized) {}
@@ -57,6 +60,9 @@ class AttributeReader {
     std::uint8_t components_;
     bool normalized_;
 };
+
+/// Whether the buffer of an attribute that advances by instances has elements for so many of them; true of others.
+bool has_elements_for(const Resources& resources, const VertexAttribute& attribute, std::uint64_t instances);
 
 /// Reads the i-th vertex number of a geometry, from the `first`-th on; the number is first + i where there is no index
 /// buffer.
@@ -102,45 +108,99 @@ class IndexReader {
 class PrimitiveReader {
   public:
     PrimitiveReader(const Resources& resources, const Geometry& geometry, std::uint32_t first_triangle = 0)
-        : index_(resources, geometry, 3 * first_triangle), topology_(geometry.topology), runs_(geometry.runs) {}
+        : index_(resources, geometry, 3 * first_triangle),
+          topology_(geometry.topology),
+          primitives_(geometry.primitive_count()),
+          runs_(geometry.runs) {}
 
-    /// The run of indices that a triangle is made of; all of them where primitive restart is off.
-    IndexRun run_of(std::uint32_t primitive) const {
-        if (runs_.empty()) return {};
-        return *(std::upper_bound(runs_.begin(), runs_.end(), primitive,
-                                  [](std::uint32_t p, const IndexRun& run) { return p < run.first_triangle; }) -
-                 1);
-    }
+    /// The run of indices that a primitive is made of; all of them where primitive restart is off.
+    IndexRun run_of(std::uint32_t primitive) const { return runs_.empty() ? IndexRun{} : *(behind(primitive) - 1); }
 
-    /// The three vertices of a primitive; every second triangle of a strip is turned round so that all wind alike
-    /// (glTF 2.0, section 3.7.2.1).
+    /// The vertices of a primitive; every second triangle of a strip is turned round so that all wind alike (glTF 2.0,
+    /// section 3.7.2.1). Points and lines repeat their last vertex.
     std::array<std::uint32_t, 3> operator()(std::uint32_t primitive) const {
         const IndexRun run = run_of(primitive);
-        const std::uint32_t triangle = primitive - run.first_triangle;
-        std::uint32_t first = run.first_index + triangle;
+        const std::uint32_t number = primitive - run.first_primitive;
+        const std::uint32_t first = run.first_index + number;
         switch (topology_) {
+        case Topology::triangles:
+            return {index_(first + 2 * number), index_(first + 2 * number + 1), index_(first + 2 * number + 2)};
         case Topology::triangle_strip: {
-            const std::uint32_t odd = triangle & 1U;
+            const std::uint32_t odd = number & 1U;
             return {index_(first), index_(first + 1 + odd), index_(first + 2 - odd)};
         }
         case Topology::triangle_fan:
             return {index_(first + 1), index_(first + 2), index_(run.first_index)};
-        case Topology::triangles:
+        case Topology::points:
+            return line(first, first);
+        case Topology::lines:
+            return line(first + number, first + number + 1);
+        case Topology::line_strip:
+            return line(first, first + 1);
+        case Topology::line_loop:
             break;
         }
-        first += 2 * triangle;
-        return {index_(first), index_(first + 1), index_(first + 2)};
+        return line(first, closes_loop(primitive) ? run.first_index : first + 1);
+    }
+
+    /// Which of the vertices is the provoking one (OpenGL 4.5, table 13.2).
+    std::size_t provoking(std::uint32_t primitive, ProvokingVertex which) const {
+        if (which == ProvokingVertex::first || topology_ == Topology::points) return 0;
+        if (topology_ == Topology::triangles) return 2;
+        if (topology_ != Topology::triangle_strip) return 1; // a fan's triangle ends with the centre
+        return ((primitive - run_of(primitive).first_primitive) & 1U) == 0 ? 2 : 1;
+    }
+
+    /// Indices up to the last one that a primitive reads, from the first one of the geometry on.
+    std::uint32_t indices_needed(std::uint32_t primitive) const {
+        const IndexRun run = run_of(primitive);
+        const std::uint32_t number = primitive - run.first_primitive;
+        const std::uint32_t corners = corners_of(topology_);
+        if (is_list(topology_)) return run.first_index + corners * (number + 1);
+        return run.first_index + number + corners - (closes_loop(primitive) ? 1 : 0);
+    }
+    /// How many of them no primitive before it reads.
+    std::uint32_t new_indices(std::uint32_t primitive) const {
+        if (is_list(topology_) || primitive == run_of(primitive).first_primitive) return corners_of(topology_);
+        return closes_loop(primitive) ? 0 : 1;
+    }
+    /// The first index that the primitives behind this one read, as long as they belong to its run; the centre of a fan
+    /// and the begin of a loop are kept.
+    std::uint32_t first_index_after(std::uint32_t primitive) const {
+        if (is_list(topology_)) return indices_needed(primitive);
+        return indices_needed(primitive) - (topology_ == Topology::triangle_strip ? 2 : 1);
     }
 
   private:
+    std::array<std::uint32_t, 3> line(std::uint32_t from, std::uint32_t to) const {
+        const std::uint32_t last = index_(to);
+        return {index_(from), last, last};
+    }
+    /// The first run behind that of a primitive.
+    std::span<const IndexRun>::iterator behind(std::uint32_t primitive) const {
+        return std::upper_bound(runs_.begin(), runs_.end(), primitive,
+                                [](std::uint32_t p, const IndexRun& run) { return p < run.first_primitive; });
+    }
+    bool closes_loop(std::uint32_t primitive) const {
+        if (topology_ != Topology::line_loop) return false;
+        return primitive + 1 == (runs_.empty() ? primitives_ : behind(primitive)->first_primitive);
+    }
+
     IndexReader index_;
     Topology topology_;
+    std::uint32_t primitives_;
     std::span<const IndexRun> runs_;
 };
 
 /// A triangle of fewer than three vertices, as stitches of strips are: it has no area from wherever it is seen.
 constexpr bool names_a_vertex_twice(const std::array<std::uint32_t, 3>& corners) {
     return corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0];
+}
+
+/// A primitive of which nothing is drawn, wherever its vertices lie.
+constexpr bool is_degenerate(Topology topology, const std::array<std::uint32_t, 3>& vertices) {
+    if (corners_of(topology) == 3) return names_a_vertex_twice(vertices);
+    return topology != Topology::points && vertices[0] == vertices[1];
 }
 
 /// What Geometry::runs has to hold where primitive restart is on; the index buffer has to be in range.

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "pipeline/draw.hpp"
+#include "pipeline/raster_state.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,6 +18,8 @@ inline constexpr int subpixel_bits = 8;
 inline constexpr int subpixel_one = 1 << subpixel_bits; ///< sub-pixel units in a pixel
 
 inline constexpr std::uint32_t largest_viewport = 16384; ///< pixels along one side
+/// A viewport may begin so many pixels before and behind the view's first pixel.
+inline constexpr std::int32_t farthest_viewport = 16384;
 /// No vertex lies farther than this from the middle of the viewport, in pixels: what does is clipped.
 inline constexpr float guard_band_pixels = 24576.0F;
 
@@ -28,8 +31,12 @@ namespace outside {
 inline constexpr std::uint32_t left = 1, right = 2, bottom = 4, top = 8, near = 16, far = 32;
 inline constexpr std::uint32_t guard_left = 64, guard_right = 128, guard_bottom = 256, guard_top = 512;
 inline constexpr std::uint32_t not_finite = 1024;
+/// Where the distance to user plane i is negative.
+constexpr std::uint32_t user_plane(std::uint32_t i) { return 2048U << i; }
+inline constexpr std::uint32_t user_planes = user_plane(most_clip_distances) - user_plane(0);
 inline constexpr std::uint32_t view_volume = left | right | bottom | top | near | far;
-inline constexpr std::uint32_t must_clip = near | far | guard_left | guard_right | guard_bottom | guard_top;
+inline constexpr std::uint32_t must_clip =
+    near | far | guard_left | guard_right | guard_bottom | guard_top | user_planes;
 } // namespace outside
 
 /// A transformed vertex.
@@ -37,23 +44,33 @@ struct ScreenVertex {
     glm::vec4 clip{};          ///< clip coordinates, y up
     std::int32_t x = 0, y = 0; ///< sub-pixel units from the centre of pixel (0, 0), y down; valid unless must_clip
     glm::vec2 window{};        ///< the same in pixels, before it was snapped
-    float depth = 0;           ///< window depth in [0,1]
+    float depth = 0;           ///< window depth in [0,1], of any size where depths are clamped
     std::uint32_t outside = 0; ///< bits of namespace outside
 };
 
+/// Pixels [left, right) x [top, bottom); none where an end does not lie behind its begin.
+struct PixelBounds {
+    std::int32_t left = 0, top = 0, right = 0, bottom = 0;
+
+    bool empty() const { return left >= right || top >= bottom; }
+    bool operator==(const PixelBounds&) const = default;
+};
+
+/// Where clip coordinates come to lie on the screen, and which of its pixels may be drawn.
 class Viewport {
   public:
-    /// width and height in pixels, 1 to largest_viewport.
-    Viewport(std::uint32_t width, std::uint32_t height)
-        : width_(width),
-          height_(height),
-          half_width_(static_cast<float>(width) * 0.5F),
-          half_height_(static_cast<float>(height) * 0.5F),
-          guard_x_(guard_band_pixels / half_width_),
-          guard_y_(guard_band_pixels / half_height_) {}
+    /// One that fills a view of this size in pixels, 1 to largest_viewport.
+    Viewport(std::uint32_t width, std::uint32_t height) : Viewport(width, height, RasterState{}) {}
+    /// The viewport, scissor and depth clamp of a state, which is_usable(), in a view.
+    Viewport(std::uint32_t view_width, std::uint32_t view_height, const RasterState& state);
 
-    std::uint32_t width() const { return width_; }
-    std::uint32_t height() const { return height_; }
+    /// The pixels of the view that lie in the viewport: what is wholly outside of them is culled.
+    const PixelBounds& visible() const { return visible_; }
+    /// Those of them that the scissor leaves.
+    const PixelBounds& drawn() const { return drawn_; }
+    /// The pixels of the view that the scissor leaves, outside of the viewport, too.
+    const PixelBounds& scissored() const { return scissored_; }
+    bool clamps_depth() const { return clamps_depth_; }
     /// The guard band in units of w: |x| <= guard_x() * w is rasterized without clipping.
     float guard_x() const { return guard_x_; }
     float guard_y() const { return guard_y_; }
@@ -63,11 +80,18 @@ class Viewport {
     /// Divides by w, applies the viewport and snaps. clip.w may be anything; the vertex must not need clipping.
     void project(ScreenVertex& vertex) const;
 
+    bool operator==(const Viewport&) const = default;
+
   private:
-    std::uint32_t width_, height_;
+    PixelBounds visible_, drawn_, scissored_;
     float half_width_, half_height_;
+    float middle_x_, middle_y_; ///< pixels from the view's top left corner
     float guard_x_, guard_y_;
+    bool clamps_depth_;
 };
+
+/// True where the viewport of a state is one that coordinates on the sub-pixel grid have room for.
+bool is_usable(const PixelRectangle& viewport);
 
 /// projection * view * model, multiplied in binary64 and rounded once.
 glm::mat4 clip_matrix(const View& view, const glm::mat4& model);

@@ -5,7 +5,7 @@
 namespace pipeline {
 
 namespace {
-constexpr double ps_per_us = 1e6;
+constexpr double picoseconds_per_us = 1e6;
 }
 
 CommandProcessor::CommandProcessor(sim::Context context, const Params& params, const GeometryPass& pass,
@@ -31,7 +31,7 @@ bool CommandProcessor::take() {
     if (begins_call()) {
         if (!converted_) cpu_us_ += pass_->term(next_).cpu_us;
         converted_ = true;
-        const auto cpu_time = static_cast<sim::Time>(cpu_us_ * ps_per_us + 0.5);
+        const auto cpu_time = static_cast<sim::Time>(cpu_us_ * picoseconds_per_us + 0.5);
         const sim::Cycle submitted = clock().cycle_at(start_ + cpu_time);
         if (submitted > cycle()) {
             wake_at(submitted);

@@ -27,24 +27,30 @@ double span_factor(const HostParams& params, std::uint32_t span) {
     return 1 + params.span_slowdown * std::min(1.0, part / whole);
 }
 
+// Whether an attribute is read and has a value of its own for each vertex.
+bool varies(const Frame& frame, const Material& material, const VertexAttribute& attribute) {
+    return attribute.divisor == 0 && reads_attribute(frame.needs, material, attribute.semantic);
+}
+
 // Bytes of the attributes that are read, of one vertex.
 double vertex_bytes(const Frame& frame, const Geometry& geometry, const Material& material) {
     double bytes = 0;
     for (const VertexAttribute& attribute : geometry.attributes)
-        if (reads_attribute(frame.needs, material, attribute.semantic)) bytes += attribute.bytes();
+        if (varies(frame, material, attribute)) bytes += attribute.bytes();
     return bytes;
 }
 
 double conversion_us(const HostParams& params, const Frame& frame, const Geometry& geometry, const Material& material) {
     double ns = 0;
     for (const VertexAttribute& attribute : geometry.attributes)
-        if (reads_attribute(frame.needs, material, attribute.semantic))
-            ns += params.convert.of(slot_of(attribute.semantic)).ns(attribute.type);
+        if (varies(frame, material, attribute)) ns += params.convert.of(slot_of(attribute.semantic)).ns(attribute.type);
     return ns * geometry.vertex_count * 1e-3;
 }
 
 // Vertices, as often as the application names them in immediate mode and as a list keeps them.
-double named_vertices(const Geometry& geometry) { return 3.0 * geometry.triangle_count(); }
+double named_vertices(const Geometry& geometry) {
+    return static_cast<double>(corners_of(geometry.topology)) * geometry.primitive_count();
+}
 
 double feed_us(const HostParams& params, Submission submission, const Geometry& geometry, std::uint32_t span,
                double bytes) {

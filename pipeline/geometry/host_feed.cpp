@@ -6,11 +6,11 @@
 namespace pipeline {
 
 namespace {
-constexpr double ps_per_us = 1e6;
+constexpr double picoseconds_of_us = 1e6;
 }
 
 void HostFeed::begin_range(std::uint32_t range) {
-    const double cycles = pass_->term(range).feed_us * ps_per_us / static_cast<double>(clock().period);
+    const double cycles = pass_->term(range).feed_us * picoseconds_of_us / static_cast<double>(clock().period);
     begin_ = std::max(end_, cycle());
     end_ = begin_ + static_cast<sim::Cycle>(std::llround(cycles));
     pass_number_ = pass_->number;

@@ -32,9 +32,8 @@ IndexFetch::IndexFetch(sim::Context context, const Params& params, const Geometr
 IndexFetch::Work IndexFetch::work_of(std::uint32_t range_number) {
     const DrawRange& range = pass_->range(range_number);
     const Geometry& geometry = pass_->geometry(range_number);
-    CHECK(range.primitives <= geometry.triangle_count());
+    CHECK(range.primitives <= geometry.primitive_count());
     Work work{.reader = PrimitiveReader(*pass_->resources, geometry, range.first_triangle),
-              .topology = geometry.topology,
               .first_primitive = range.first_primitive,
               .range = range_number,
               .index_bytes = bytes_of(geometry.index_type),
@@ -42,10 +41,10 @@ IndexFetch::Work IndexFetch::work_of(std::uint32_t range_number) {
               .first_line = lines_,
               .end_line = lines_};
     if (work.index_bytes == 0) return work;
-    if (geometry.primitive_restart && range.primitives == geometry.triangle_count())
+    if (geometry.primitive_restart && range.primitives == geometry.primitive_count())
         work.end_index = geometry.index_count;
     else if (work.primitives > 0)
-        work.end_index = work.indices_needed(work.primitives - 1);
+        work.end_index = work.reader.indices_needed(work.primitives - 1);
     if (work.end_index == 0) return work;
     const std::uint64_t first = pass_->resources->buffers[geometry.index_buffer].address + geometry.index_offset +
                                 std::uint64_t{3} * range.first_triangle * work.index_bytes;
@@ -143,21 +142,21 @@ sim::Activity IndexFetch::pass_over(Work& work, std::uint32_t end) {
 sim::Activity IndexFetch::send_primitive() {
     Work& work = work_.front();
     if (work.index_bytes != 0) {
-        const std::uint32_t needed = work.indices_needed(work.next);
-        const sim::Activity activity = pass_over(work, needed - work.new_indices(work.next));
+        const std::uint32_t needed = work.reader.indices_needed(work.next);
+        const sim::Activity activity = pass_over(work, needed - work.reader.new_indices(work.next));
         if (activity != sim::Activity::busy) return activity;
         if (!arrived(work, needed - 1)) return sim::Activity::memory;
     }
     if (!primitives_out.ready()) return sim::Activity::blocked;
     std::uint32_t bytes = 0;
     if (work.index_bytes != 0) {
-        const std::uint32_t indices = work.new_indices(work.next);
+        const std::uint32_t indices = work.reader.new_indices(work.next);
         if (!spend(indices * work.index_bytes)) return sim::Activity::memory;
         stats_.indices += indices;
         work.read += indices;
         bytes = (work.read - work.reported) * work.index_bytes;
         work.reported = work.read;
-        used_up_ = line_of(work, work.first_index_after(work.next));
+        used_up_ = line_of(work, work.reader.first_index_after(work.next));
     }
     primitives_out.send({work.first_primitive + work.next, work.range, work.reader(work.next), bytes});
     ++work.next;

@@ -2,10 +2,10 @@
 // place when no draw of the frame has an index buffer.
 //
 // Modelled: whole memory lines, requested ahead in order, across draws, within a bounded buffer; indices consumed per
-// cycle; lists, strips and fans, which consume three, one and one new index per triangle; with primitive restart all
-// indices of the draw are read, restarts and those that make no triangle included.
-// Not modelled: a cache of index lines (an instance reads them again).
-// Source: specification 004, sections 2.1, 5 (index_fetch_GBps), 9.1.
+// cycle; lists of triangles, lines and points, which consume three, two and one new index per primitive; strips, fans
+// and loops, which consume one; with primitive restart all indices of the draw are read, restarts and those that make
+// no primitive included. Not modelled: a cache of index lines (an instance reads them again). Source: specification
+// 004, sections 2.1, 5 (index_fetch_GBps), 9.1.
 #pragma once
 
 #include "pipeline/functional/vertex_fetch.hpp"
@@ -74,7 +74,6 @@ class IndexFetch final : public sim::Component {
     /// A draw between its first request and its last primitive. Lines are numbered over the whole run.
     struct Work {
         PrimitiveReader reader;
-        Topology topology = Topology::triangles;
         std::uint32_t first_primitive = 0;
         std::uint32_t range = 0;
         std::uint32_t index_bytes = 0; ///< 0: not indexed
@@ -86,24 +85,6 @@ class IndexFetch final : public sim::Component {
         std::uint64_t address = 0;   ///< of the first line
         std::uint32_t skip = 0;      ///< bytes of the first line before the first index
         std::uint64_t first_line = 0, end_line = 0;
-
-        /// Indices up to the last one that a primitive reads.
-        std::uint32_t indices_needed(std::uint32_t primitive) const {
-            const IndexRun run = reader.run_of(primitive);
-            const std::uint32_t triangle = primitive - run.first_triangle;
-            return run.first_index + (topology == Topology::triangles ? 3 * triangle + 3 : triangle + 3);
-        }
-        /// How many of them no primitive before it reads.
-        std::uint32_t new_indices(std::uint32_t primitive) const {
-            const bool begins = primitive == reader.run_of(primitive).first_triangle;
-            return topology == Topology::triangles || begins ? 3 : 1;
-        }
-        /// The first index of the list that the primitives behind this one read, as long as they belong to its run; the
-        /// centre of a fan is kept.
-        std::uint32_t first_index_after(std::uint32_t primitive) const {
-            if (topology == Topology::triangles) return indices_needed(primitive);
-            return indices_needed(primitive) - (topology == Topology::triangle_strip ? 2 : 1);
-        }
     };
 
     sim::Activity tick() override;
@@ -113,7 +94,7 @@ class IndexFetch final : public sim::Component {
     bool request_lines();
     /// What keeps the next primitive from leaving; busy when nothing does.
     sim::Activity send_primitive();
-    /// Reads indices of which no triangle is made, up to `end`; what keeps it from getting there, or busy.
+    /// Reads indices of which no primitive is made, up to `end`; what keeps it from getting there, or busy.
     sim::Activity pass_over(Work& work, std::uint32_t end);
     bool arrived(const Work& work, std::uint32_t index) const;
     bool spend(std::uint32_t bytes);

@@ -19,8 +19,8 @@ struct DrawCommand {
 struct IndexedPrimitive {
     std::uint32_t primitive = 0;
     std::uint32_t range = 0;
-    std::array<std::uint32_t, 3> vertices{};
-    std::uint32_t index_bytes = 0; ///< read for this primitive and not for the one before
+    std::array<std::uint32_t, 3> vertices{}; ///< lines and points repeat their last one
+    std::uint32_t index_bytes = 0;           ///< read for this primitive and not for the one before
 };
 
 /// Vertex reuse -> vertex fetch: a vertex that has to be shaded, or only index bytes that pass the input port.

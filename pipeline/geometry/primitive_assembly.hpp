@@ -1,4 +1,4 @@
-// Primitive assembly: holds primitives until their three vertices are shaded.
+// Primitive assembly: holds primitives until their one to three vertices are shaded.
 //
 // Modelled: primitives in order, a bounded number a cycle. Shaded vertices come in sequence order, so a primitive is
 // complete once as many vertices have arrived as its last one has for a sequence number.

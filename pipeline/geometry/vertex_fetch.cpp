@@ -28,7 +28,8 @@ VertexFetch::Stats VertexFetch::stats() const {
 void VertexFetch::begin_range(std::uint32_t range) {
     const Resources& resources = *pass_->resources;
     const Material& material = resources.materials[pass_->draw(range).material];
-    lines_ = VertexLines(resources, pass_->geometry(range), material, needs_, params_.cache.line);
+    lines_ = VertexLines(resources, pass_->geometry(range), material, needs_, params_.cache.line,
+                         pass_->range(range).instance);
     const InputLayout layout = input_layout(needs_, pass_->geometry(range), material);
     const double core_mhz = 1e6 / static_cast<double>(clock().period);
     cost_ = input_cost(input_cost_parts(params_.port, host_, pass_->term(range), layout, params_.cache.line, core_mhz));

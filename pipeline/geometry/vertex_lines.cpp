@@ -23,12 +23,18 @@ bool reads_attribute(const Needs& needs, const Material& material, Semantic sema
 }
 
 VertexLines::VertexLines(const Resources& resources, const Geometry& geometry, const Material& material,
-                         const Needs& needs, std::uint32_t line)
+                         const Needs& needs, std::uint32_t line, std::uint32_t instance)
     : line_shift_(static_cast<unsigned>(std::countr_zero(line))) {
-    for (const VertexAttribute& attribute : geometry.attributes)
-        if (reads_attribute(needs, material, attribute.semantic))
-            streams_.push_back(
-                {resources.buffers[attribute.buffer].address + attribute.offset, attribute.stride, attribute.bytes()});
+    for (const VertexAttribute& attribute : geometry.attributes) {
+        if (!reads_attribute(needs, material, attribute.semantic)) continue;
+        Stream stream{resources.buffers[attribute.buffer].address + attribute.offset, attribute.stride,
+                      attribute.bytes()};
+        if (attribute.divisor != 0) {
+            stream.address += std::uint64_t{attribute.stride} * (instance / attribute.divisor);
+            stream.stride = 0;
+        }
+        streams_.push_back(stream);
+    }
     // Attributes that lie side by side share lines; in order of address a shared one is the last line listed.
     std::sort(streams_.begin(), streams_.end(), [](const Stream& a, const Stream& b) { return a.address < b.address; });
 }
@@ -58,6 +64,7 @@ double VertexLines::mean_lines() const {
     double lines = 0;
     for (std::size_t i = 0; i < streams_.size(); ++i) {
         const Stream& stream = streams_[i];
+        if (stream.stride == 0) continue; // one line for all vertices
         const bool beside = i > 0 && stream.stride == streams_[i - 1].stride &&
                             stream.address - streams_[i - 1].address < stream.stride;
         // A record of b bytes at any multiple of its alignment lies in 1 + (b - alignment) / line lines; one that

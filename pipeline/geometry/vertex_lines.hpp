@@ -16,8 +16,9 @@ class VertexLines {
   public:
     VertexLines() = default;
     /// @param line bytes of a line; a power of two
+    /// @param instance whose elements attributes with a divisor have
     VertexLines(const Resources& resources, const Geometry& geometry, const Material& material, const Needs& needs,
-                std::uint32_t line);
+                std::uint32_t line, std::uint32_t instance = 0);
 
     void begin(std::uint32_t vertex);
     /// Ends the list of the present vertex.
@@ -32,7 +33,7 @@ class VertexLines {
     double mean_lines() const;
 
   private:
-    /// Bytes of vertex 0 of one attribute, and the distance to those of vertex 1.
+    /// Bytes of vertex 0 of one attribute, and the distance to those of vertex 1: 0 where it advances by instances.
     struct Stream {
         std::uint64_t address = 0;
         std::uint32_t stride = 0;

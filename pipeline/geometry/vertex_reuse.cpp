@@ -20,6 +20,7 @@ void VertexReuse::begin_range(std::uint32_t range) {
     const Geometry& geometry = pass_->geometry(range);
     const bool indexed = geometry.index_type != IndexType::none;
     model_.begin_draw(indexed ? geometry.vertex_count : std::max(geometry.vertex_count, geometry.index_count), indexed);
+    corners_ = corners_of(geometry.topology);
     pass_number_ = pass_->number;
     range_ = range;
     draw_ = pass_->range(range).draw;
@@ -30,14 +31,14 @@ void VertexReuse::look_up(const IndexedPrimitive& primitive) {
     if (primitive.range != range_ || pass_->number != pass_number_) begin_range(primitive.range);
     present_ = primitive;
     if (forwards_index_bytes_) index_bytes_ += primitive.index_bytes;
-    result_ = model_.triangle(primitive.vertices);
+    result_ = model_.primitive(primitive.vertices, corners_);
     unsent_ = result_.missed;
     holding_ = true;
     const auto misses = static_cast<std::uint64_t>(std::popcount(result_.missed));
     for (Stats* stats : {&stats_, &draw_stats_[draw_]}) {
         ++stats->primitives;
         stats->misses += misses;
-        stats->hits += 3 - misses;
+        stats->hits += corners_ - misses;
     }
 }
 

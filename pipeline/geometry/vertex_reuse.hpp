@@ -20,7 +20,9 @@ struct VertexReuseStats {
         using S = VertexReuseStats;
         return std::tuple{
             sim::field<&S::primitives>("Primitives looked up").unit("primitives"),
-            sim::field<&S::hits>("Corners whose vertex had been shaded; hits + misses = 3 primitives").unit("vertices"),
+            sim::field<&S::hits>("Corners whose vertex had been shaded; hits + misses = 3 for each triangle, 2 for "
+                                 "each line, 1 for each point")
+                .unit("vertices"),
             sim::field<&S::misses>("Vertices sent to be shaded").unit("vertices")};
     }
 };
@@ -60,6 +62,7 @@ class VertexReuse final : public sim::Component {
     std::vector<Stats> draw_stats_;
     std::uint32_t pass_number_ = 0; ///< with range_: what the cache was last emptied for
     std::uint32_t range_ = 0;
+    std::uint32_t corners_ = 3; ///< of the primitives of range_
     std::uint32_t draw_ = 0;
     bool holding_ = false;    ///< present_ has been looked up and has not left
     std::uint8_t unsent_ = 0; ///< corners of present_ whose vertex still has to be sent

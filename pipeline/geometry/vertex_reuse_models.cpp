@@ -20,14 +20,14 @@ void FifoReuse::begin_draw(std::uint32_t vertex_count) {
     if (vertex_count > run_of_.size()) run_of_.resize(vertex_count, 0);
 }
 
-ReuseResult FifoReuse::triangle(const std::array<std::uint32_t, 3>& vertices) {
+ReuseResult FifoReuse::primitive(const std::array<std::uint32_t, 3>& vertices, std::size_t corners) {
     std::uint32_t misses = 0; // a vertex that occurs twice counts twice here
-    for (const std::uint32_t vertex : vertices) misses += held(vertex) ? 0 : 1;
+    for (std::size_t i = 0; i < corners; ++i) misses += held(vertices[i]) ? 0 : 1;
     const bool warp_full = warp_vertices_ != 0 && warp_ + misses > warp_vertices_;
     const bool group_full = group_triangles_ != 0 && group_ == group_triangles_;
     if (warp_full || group_full) flush();
     ReuseResult result;
-    for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t i = 0; i < corners; ++i) {
         const std::uint32_t vertex = vertices[i];
         if (!held(vertex)) {
             CHECK_MSG(next_ != 0, "2^32 vertices shaded in one run");
@@ -70,9 +70,9 @@ std::uint32_t LruReuse::free_slot() {
     return oldest;
 }
 
-ReuseResult LruReuse::triangle(const std::array<std::uint32_t, 3>& vertices) {
+ReuseResult LruReuse::primitive(const std::array<std::uint32_t, 3>& vertices, std::size_t corners) {
     ReuseResult result;
-    for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t i = 0; i < corners; ++i) {
         const std::uint32_t vertex = vertices[i];
         if (held(vertex)) {
             take_out(slot_of_[vertex]);
@@ -100,13 +100,13 @@ void MesaReuse::begin_draw(std::uint32_t vertex_count, bool indexed) {
         table_.resize(vertex_count);
 }
 
-ReuseResult MesaReuse::triangle(const std::array<std::uint32_t, 3>& vertices) {
-    if (indexed_ && indices_ == run_indices) {
+ReuseResult MesaReuse::primitive(const std::array<std::uint32_t, 3>& vertices, std::size_t corners) {
+    if (indexed_ && indices_ + corners > run_indices) {
         flushed_ = next_;
         indices_ = 0;
     }
     ReuseResult result;
-    for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t i = 0; i < corners; ++i) {
         Entry& entry = entry_of(vertices[i]);
         if (entry.vertex != vertices[i] || entry.run < flushed_) {
             CHECK_MSG(next_ != 0, "2^32 vertices shaded in one run");
@@ -115,7 +115,7 @@ ReuseResult MesaReuse::triangle(const std::array<std::uint32_t, 3>& vertices) {
         }
         result.sequences[i] = entry.run;
     }
-    indices_ += 3;
+    indices_ += static_cast<std::uint32_t>(corners);
     return result;
 }
 

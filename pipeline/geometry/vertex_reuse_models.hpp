@@ -1,6 +1,6 @@
-// Which vertices of a triangle list have been shaded already: models of the post-transform cache without time.
+// Which vertices of a list of primitives have been shaded already: models of the post-transform cache without time.
 //
-// Each model gives every shader run a sequence number, counting from 1, and tells for each corner of a triangle which
+// Each model gives every shader run a sequence number, counting from 1, and tells for each corner of a primitive which
 // run produced it. All are exact replacements of each other. Sources: specification 004, sections 2.1, 9.2; the warp
 // and group rule is that of meshoptimizer's vertex cache analyzer; the batches are what Mesa's llvmpipe was measured to
 // do.
@@ -19,7 +19,7 @@ namespace pipeline {
 enum class ReuseModel : std::uint8_t {
     fifo,  ///< the last `entries` shaded vertices
     batch, ///< fifo that is emptied when a warp of vertices or a group of triangles is full
-    mesa,  ///< runs of 1023 indices, each with a direct-mapped table of 256 entries
+    mesa,  ///< runs of 1023 indices (of lines and points 1024), each with a direct-mapped table of 256 entries
     lru,   ///< the `entries` shaded vertices that were used last
 };
 
@@ -59,10 +59,10 @@ struct VertexReuseParams {
 };
 static_assert(sim::fully_described<VertexReuseParams>);
 
-/// The shader runs that produced the corners of a triangle, and which of them this triangle caused.
+/// The shader runs that produced the corners of a primitive, and which of them this primitive caused.
 struct ReuseResult {
-    std::array<std::uint32_t, 3> sequences{};
-    std::uint8_t missed = 0; ///< bit i: corner i is shaded for this triangle
+    std::array<std::uint32_t, 3> sequences{}; ///< 0 where there is no such corner
+    std::uint8_t missed = 0;                  ///< bit i: corner i is shaded for this primitive
 };
 
 /// First in, first out, with optional limits of a warp and of a primitive group.
@@ -71,7 +71,8 @@ class FifoReuse {
     /// `warp_vertices` and `group_triangles`: 0 = no limit. entries >= 3.
     FifoReuse(std::uint32_t entries, std::uint32_t warp_vertices, std::uint32_t group_triangles);
     void begin_draw(std::uint32_t vertex_count);
-    ReuseResult triangle(const std::array<std::uint32_t, 3>& vertices);
+    ReuseResult primitive(const std::array<std::uint32_t, 3>& vertices, std::size_t corners);
+    ReuseResult triangle(const std::array<std::uint32_t, 3>& vertices) { return primitive(vertices, 3); }
     std::uint32_t runs() const { return next_ - 1; } ///< shader runs so far
 
   private:
@@ -94,7 +95,8 @@ class LruReuse {
   public:
     explicit LruReuse(std::uint32_t entries); ///< at least 3
     void begin_draw(std::uint32_t vertex_count);
-    ReuseResult triangle(const std::array<std::uint32_t, 3>& vertices);
+    ReuseResult primitive(const std::array<std::uint32_t, 3>& vertices, std::size_t corners);
+    ReuseResult triangle(const std::array<std::uint32_t, 3>& vertices) { return primitive(vertices, 3); }
     std::uint32_t runs() const { return next_ - 1; }
 
   private:
@@ -121,11 +123,12 @@ class LruReuse {
 /// Mesa's vertex batches. Without an index buffer each vertex is shaded once.
 class MesaReuse {
   public:
-    static constexpr std::uint32_t run_indices = 1023;
+    static constexpr std::uint32_t run_indices = 1024; ///< rounded down to whole primitives
     static constexpr std::uint32_t table_entries = 256;
 
     void begin_draw(std::uint32_t vertex_count, bool indexed);
-    ReuseResult triangle(const std::array<std::uint32_t, 3>& vertices);
+    ReuseResult primitive(const std::array<std::uint32_t, 3>& vertices, std::size_t corners);
+    ReuseResult triangle(const std::array<std::uint32_t, 3>& vertices) { return primitive(vertices, 3); }
     std::uint32_t runs() const { return next_ - 1; }
 
   private:
@@ -146,12 +149,14 @@ class MesaReuse {
 class VertexReuseModel {
   public:
     explicit VertexReuseModel(const VertexReuseParams& params);
-    /// Forgets everything; vertices of the coming triangles are below `vertex_count`.
+    /// Forgets everything; vertices of the coming primitives are below `vertex_count`.
     void begin_draw(std::uint32_t vertex_count, bool indexed);
-    ReuseResult triangle(const std::array<std::uint32_t, 3>& vertices) {
-        if (FifoReuse* fifo = std::get_if<FifoReuse>(&model_)) return fifo->triangle(vertices);
-        return std::visit([&](auto& model) { return model.triangle(vertices); }, model_);
+    /// `vertices` of which the first `corners` count, 1 to 3.
+    ReuseResult primitive(const std::array<std::uint32_t, 3>& vertices, std::size_t corners) {
+        if (FifoReuse* fifo = std::get_if<FifoReuse>(&model_)) return fifo->primitive(vertices, corners);
+        return std::visit([&](auto& model) { return model.primitive(vertices, corners); }, model_);
     }
+    ReuseResult triangle(const std::array<std::uint32_t, 3>& vertices) { return primitive(vertices, 3); }
     std::uint32_t runs() const;
 
   private:

@@ -1,20 +1,6 @@
 #include "pipeline/memory/memory_hub.hpp"
 
-#include <bit>
-
 namespace pipeline {
-
-namespace {
-
-constexpr std::uint32_t most_clients = 64; ///< bits of a mask of clients
-
-/// The first set bit at or after `from`, going round.
-std::uint32_t next_bit(std::uint64_t bits, std::uint32_t from) {
-    const std::uint64_t above = bits & (~std::uint64_t{0} << from);
-    return static_cast<std::uint32_t>(std::countr_zero(above != 0 ? above : bits));
-}
-
-} // namespace
 
 MemoryHub::MemoryHub(sim::Context context, const Params& params, std::uint32_t partitions, std::uint32_t interleave)
     : Component(std::move(context)),
@@ -22,14 +8,14 @@ MemoryHub::MemoryHub(sim::Context context, const Params& params, std::uint32_t p
       interleave_(interleave),
       next_client_(partitions, 0),
       reads_(params.reads_in_flight),
-      wanted_(partitions, 0) {
+      wanted_(partitions) {
     for (std::uint32_t i = 0; i < partitions; ++i) partitions_.push_back(std::make_unique<PartitionPort>(*this));
     free_reads_.reserve(params.reads_in_flight);
     for (std::uint32_t i = params.reads_in_flight; i > 0; --i) free_reads_.push_back(i - 1);
 }
 
 MemoryHub::ClientPort& MemoryHub::add_client() {
-    CHECK_MSG(clients_.size() < most_clients, name());
+    CHECK_MSG(clients_.size() < ClientSet::most, name());
     clients_.push_back(std::make_unique<ClientPort>(*this));
     return *clients_.back();
 }
@@ -61,8 +47,8 @@ bool MemoryHub::pass_responses() {
     return progress;
 }
 
-void MemoryHub::grant(std::uint32_t partition, std::uint64_t clients) {
-    const std::uint32_t client = next_bit(clients, next_client_[partition]);
+void MemoryHub::grant(std::uint32_t partition, const ClientSet& clients) {
+    const std::uint32_t client = clients.next(next_client_[partition]);
     MemoryRequest request = clients_[client]->requests_in.receive();
     CHECK_MSG(request.address % interleave_ + request.bytes <= interleave_, "a request crosses an interleave block");
     if (!request.write) {
@@ -73,9 +59,9 @@ void MemoryHub::grant(std::uint32_t partition, std::uint64_t clients) {
         stats_.reads_in_flight.note(reads_.size() - free_reads_.size());
     }
     partitions_[partition]->requests_out.send(request);
-    next_client_[partition] = (client + 1) % most_clients;
+    next_client_[partition] = (client + 1) % ClientSet::most;
     ++stats_.requests;
-    if ((clients & (clients - 1)) != 0) ++stats_.conflicts;
+    if (clients.has_several()) ++stats_.conflicts;
 }
 
 // One grant per partition: what the clients ask for first, then who is next in turn.
@@ -88,9 +74,9 @@ bool MemoryHub::pass_requests(bool& waiting) {
         waiting = true;
         if (!request->write && !room) continue;
         const std::uint32_t partition = partition_of(request->address);
-        if ((wants >> partition & 1U) == 0) wanted_[partition] = 0;
+        if ((wants >> partition & 1U) == 0) wanted_[partition].clear();
         wants |= std::uint64_t{1} << partition;
-        wanted_[partition] |= std::uint64_t{1} << client;
+        wanted_[partition].add(client);
     }
     bool progress = false;
     for (; wants != 0; wants &= wants - 1) {

@@ -11,6 +11,8 @@
 #include "sim/channel.hpp"
 #include "sim/described.hpp"
 
+#include <array>
+#include <bit>
 #include <memory>
 #include <vector>
 
@@ -31,6 +33,30 @@ struct MemoryHubStats {
 };
 static_assert(sim::fully_described<MemoryHubStats>);
 
+/// Numbers of clients of a crossbar.
+class ClientSet {
+  public:
+    static constexpr std::uint32_t most = 128; ///< 64 fragment pipes, and the units in front of them
+
+    void clear() { words_ = {}; }
+    void add(std::uint32_t client) { words_[client / 64] |= std::uint64_t{1} << client % 64; }
+    bool has_several() const { return std::popcount(words_[0]) + std::popcount(words_[1]) > 1; }
+
+    /// The first one at or after `from`, going round; of a set that is not empty.
+    std::uint32_t next(std::uint32_t from) const {
+        const std::uint32_t word = from / 64;
+        if (const std::uint64_t above = words_[word] & ~std::uint64_t{0} << from % 64; above != 0)
+            return 64 * word + lowest(above);
+        if (word == 0 && words_[1] != 0) return 64 + lowest(words_[1]);
+        return words_[0] != 0 ? lowest(words_[0]) : 64 + lowest(words_[1]);
+    }
+
+  private:
+    static std::uint32_t lowest(std::uint64_t bits) { return static_cast<std::uint32_t>(std::countr_zero(bits)); }
+
+    std::array<std::uint64_t, 2> words_{};
+};
+
 class MemoryHub final : public sim::Component {
   public:
     using Params = MemoryHubParams;
@@ -50,7 +76,7 @@ class MemoryHub final : public sim::Component {
         sim::Out<MemoryRequest> requests_out;
         sim::In<MemoryResponse> responses_in;
     };
-    /// A new port pair for one more client; at most 64 clients.
+    /// A new port pair for one more client; at most ClientSet::most.
     ClientPort& add_client();
     PartitionPort& partition(std::uint32_t index) { return *partitions_[index]; }
 
@@ -67,7 +93,7 @@ class MemoryHub final : public sim::Component {
     sim::Activity tick() override;
     bool pass_responses();
     bool pass_requests(bool& waiting);
-    void grant(std::uint32_t partition, std::uint64_t clients);
+    void grant(std::uint32_t partition, const ClientSet& clients);
 
     Params params_;
     Stats stats_;
@@ -78,7 +104,7 @@ class MemoryHub final : public sim::Component {
     std::uint32_t next_partition_ = 0;       ///< first in turn to answer
     std::vector<Read> reads_;
     std::vector<std::uint32_t> free_reads_;
-    std::vector<std::uint64_t> wanted_; ///< per partition: clients with a request for it, this cycle
+    std::vector<ClientSet> wanted_; ///< per partition: clients with a request for it, this cycle
 };
 
 } // namespace pipeline

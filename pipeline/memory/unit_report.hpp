@@ -4,6 +4,8 @@
 #include "sim/component.hpp"
 #include "sim/described_json.hpp"
 
+#include <nlohmann/json.hpp>
+
 namespace pipeline {
 
 /// Cycles of its clock that a component spent in each activity so far, added to `cycles`.

@@ -13,7 +13,6 @@
 
 #include <functional>
 #include <memory>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -64,7 +63,7 @@ struct BlenderSite {
 struct PassesSite {
     PeelRule rule = PeelRule::exact;
     double eps = 1e-4;
-    DepthFormat depth_format = DepthFormat::d32f;
+    SurfaceFormat depth_format = SurfaceFormat::d32f;
     PassCapture capture = PassCapture::nearest;
     std::uint32_t passes = 0; ///< geometry passes; 0 = one for each entry
 };
@@ -137,14 +136,9 @@ class KBufferDesign {
     /// A fresh plan for one machine.
     virtual KBufferPlan plan(const ModifyProgram& program, const View& view) const = 0;
     /// Effective parameters.
-    virtual nlohmann::ordered_json parameters() const = 0;
+    virtual sim::DescribedRef parameters() const = 0;
     /// What it adds to a GPU of this shape.
     virtual AddedHardware area(const ModifyProgram& program, const View& view, const GpuShape& shape) const = 0;
 };
 
 } // namespace pipeline
-
-template <>
-struct sim::EnumNames<pipeline::DepthFormat> {
-    static constexpr std::array<std::string_view, 3> names{"d16", "d24", "d32f"};
-};

@@ -71,6 +71,11 @@ RopStats Rop::stats() const {
 
 void Rop::begin_pass() {
     const bool kbuffer = pass_->end != FragmentEnd::depth_colour;
+    uses_.clear();
+    for (const RasterState& state : pass_->states.all()) {
+        uses_.push_back(use_of(state, pass_->depth_format, pass_->colour_write, pass_->colour_format));
+        uses_.back().keeps_depth |= pass_->farthest;
+    }
     const std::array<bool, 3> used{shape_.depth && !kbuffer, shape_.colour && !kbuffer, kbuffer};
     for (const Use use : {Use::depth, Use::colour, Use::kbuffer}) {
         const auto at = static_cast<std::size_t>(use);
@@ -117,15 +122,18 @@ bool Rop::admit() {
     const std::uint32_t block = pass_->layout.block_of(quad.x, quad.y);
     const bool kbuffer = pass_->end != FragmentEnd::depth_colour;
     draw_ = pass_->draw_of(input->quad);
-    const std::array<bool, 3> wanted{!kbuffer && (pass_->depth.test || pass_->depth.write),
-                                     !kbuffer && pass_->colour_write, kbuffer};
+    const SurfaceUse use_of_surfaces = kbuffer ? SurfaceUse{} : use_of_quad(queued.task.quad);
+    const std::array<bool, 3> wanted{use_of_surfaces.depth, use_of_surfaces.colour, kbuffer};
+    const std::array<bool, 3> keeps{use_of_surfaces.keeps_depth, use_of_surfaces.keeps_colour,
+                                    pass_->end != FragmentEnd::kbuffer_store};
     // All or none, so that a quad that has to wait holds nothing and counts nothing.
     for (const Use use : {Use::depth, Use::colour, Use::kbuffer})
         if (wanted[static_cast<std::size_t>(use)] && cache(use).victim() == no_entry &&
             cache(use).find(cache(use).shape().line_of(block)) == no_entry)
             return false;
     for (const Use use : {Use::depth, Use::colour, Use::kbuffer})
-        if (const auto at = static_cast<std::size_t>(use); wanted[at]) queued.entry[at] = secure_line(use, block);
+        if (const auto at = static_cast<std::size_t>(use); wanted[at])
+            queued.entry[at] = secure_line(use, block, keeps[at]);
     part_taken(queued.task);
     queue_.push(queued);
     stats_.queue_max.note(queue_.size());

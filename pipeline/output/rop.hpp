@@ -3,22 +3,23 @@
 //
 // Modelled: in-order input queue whose lookups run ahead of execution; caches of 2x2 sectors for depth, colour and
 // k-buffer, each with a share of the GPU's bytes; stores under a byte mask that fetch nothing; write-back of the dirty
-// pixels only, in whole bursts; fast clears, whose sectors are not fetched; depth test, colour write and fixed
-// blending; stores of k-buffer values computed by the shader; the programmable blender with its interlock; k-buffer
-// reads from texture units, served from the tile cache or from memory as the visibility rule says, with the value of
-// the cycle in which that array is read; stores that can be seen behind the tile cache when the memory's array has
-// taken the burst that writes them back; units that modify pixels in place (programmable blender, peeling unit, atomic
-// minima); lists of fragments; write-back on replacement, on command and at the end of a pass; clears and copies as
-// streams of memory traffic. Every access to a pixel's state happens in this one component, reads before writes within
-// a cycle. A group of sample quads is taken apart as it enters the queue, one sample quad per cycle: from there on each
-// has its own sector, test, program run and bytes. A read of a texture unit that finds only some of its pixels in the
-// cache takes the others from memory, and they complete the sector as they pass. Not modelled: stencil, logic
-// operations, compression, tests and stores of several samples at once. Source: specification 004, sections 2.1, 7 (rop
-// parameters), 7.1 (t_rop, t_vis), 7.3, 7.4, 7.6 and 8.
+// pixels only, in whole bursts; fast clears, whose sectors are not fetched; stencil and depth test, colour write,
+// fixed blending and write masks, with the raster state of each draw; stores of k-buffer values computed by the shader;
+// the programmable blender with its interlock; k-buffer reads from texture units, served from the tile cache or from
+// memory as the visibility rule says, with the value of the cycle in which that array is read; stores that can be seen
+// behind the tile cache when the memory's array has taken the burst that writes them back; units that modify pixels in
+// place (programmable blender, peeling unit, atomic minima); lists of fragments; write-back on replacement, on command
+// and at the end of a pass; clears and copies as streams of memory traffic. Every access to a pixel's state happens in
+// this one component, reads before writes within a cycle. A group of sample quads is taken apart as it enters the
+// queue, one sample quad per cycle: from there on each has its own sector, test, program run and bytes. A read of a
+// texture unit that finds only some of its pixels in the cache takes the others from memory, and they complete the
+// sector as they pass. Not modelled: logic operations, compression, tests and stores of several samples at once.
+// Source: specification 004, sections 2.1, 7 (rop parameters), 7.1 (t_rop, t_vis), 7.3, 7.4, 7.6 and 8.
 #pragma once
 
 #include "pipeline/fixed_queue.hpp"
 #include "pipeline/fragment/messages.hpp"
+#include "pipeline/functional/fragment_operations.hpp"
 #include "pipeline/memory/messages.hpp"
 #include "pipeline/output/programmable_blender.hpp"
 #include "pipeline/output/rop_params.hpp"
@@ -123,7 +124,7 @@ class Rop final : public sim::Component {
     bool admit();
     QuadTask next_part(const QuadTask& task) const;
     void part_taken(const QuadTask& part);
-    std::uint32_t secure_line(Use use, std::uint32_t block);
+    std::uint32_t secure_line(Use use, std::uint32_t block, bool keeps);
     bool execute(sim::Activity& waiting);
     bool stream_next();
     bool send_requests();
@@ -138,7 +139,7 @@ class Rop final : public sim::Component {
     std::uint32_t own_lines(const SectorShape& shape) const;
     std::uint32_t lines_that_fit(Use use) const;
     std::uint64_t line_address(Use use, std::uint32_t line) const;
-    bool fetches(Use use) const;
+    const SurfaceUse& use_of_quad(QuadId quad) const { return uses_[pass_->states.number(*pass_->stream, quad)]; }
     bool cleared(Use use, std::uint32_t line) const;
     bool has_room() const; ///< for what one step asks of memory and tells the texture caches
     void request(std::uint64_t address, std::uint32_t bytes, std::uint32_t tag, MemoryClient client, bool write,
@@ -156,7 +157,8 @@ class Rop final : public sim::Component {
     bool send_commits();
     void sample(const KBufferRead& read, std::uint64_t targets);
     std::uint32_t run_depth_colour(const Queued& queued);
-    void write_colour(QuadId quad, std::uint32_t pixel, std::size_t at);
+    void store_colour(const RasterState& state, QuadId quad, std::uint32_t pixel, std::size_t at);
+    FragmentTest test_pixel(const RasterState& state, QuadId quad, std::size_t at, DepthCode incoming);
     std::uint32_t run_store(const Queued& queued);
     std::uint32_t run_blend(const Queued& queued);
     std::uint32_t run_append(const Queued& queued);
@@ -184,6 +186,7 @@ class Rop final : public sim::Component {
     RopSurfaces surfaces_;
     std::vector<std::string> port_names_;
     RopStats stats_;
+    std::vector<SurfaceUse> uses_; ///< by raster state of the pass
     RopShape shape_;
     TileCache depth_tiles_, colour_tiles_, kbuffer_tiles_;
     std::unique_ptr<ProgrammableBlender> blender_;

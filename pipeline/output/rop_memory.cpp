@@ -77,19 +77,6 @@ bool Rop::has_room() const {
            invalidations_.size() + 8 <= invalidations_.capacity();
 }
 
-// Stores overwrite whole pixels under a byte mask; only what is combined with the stored value is fetched.
-bool Rop::fetches(Use use) const {
-    switch (use) {
-    case Use::depth:
-        return pass_->depth.test || pass_->farthest;
-    case Use::colour:
-        return pass_->blend != BlendMode::replace;
-    case Use::kbuffer:
-        break;
-    }
-    return pass_->end != FragmentEnd::kbuffer_store;
-}
-
 void Rop::request(std::uint64_t address, std::uint32_t bytes, std::uint32_t tag, MemoryClient client, bool write,
                   std::uint32_t draw) {
     requests_.push({address, bytes, tag, draw, client, write, (tag & tag_kind) == tag_store});
@@ -225,18 +212,24 @@ void Rop::take_answer(std::uint32_t tag) {
 }
 
 // The entry that holds the sector, replacing another line and asking for this one if need be; pinned for one more quad.
-std::uint32_t Rop::secure_line(Use use, std::uint32_t block) {
+// Stores overwrite whole pixels under a byte mask; only what is kept of the old content, to be combined with, is
+// fetched. A line that came on chip by stores alone is fetched when the first quad comes that needs more of it.
+std::uint32_t Rop::secure_line(Use use, std::uint32_t block, bool keeps) {
     TileCache& lines = cache(use);
     const std::uint32_t line = lines.shape().line_of(block);
     std::uint32_t entry = lines.find(line);
     ++lines.stats.accesses;
     if (entry != no_entry) {
         ++lines.stats.hits;
+        if (keeps && !lines.pending(entry) && !lines.whole(entry)) {
+            lines.await(entry);
+            fetch(use, entry);
+        }
     } else {
         ++lines.stats.misses;
         entry = lines.victim();
         if (lines.dirty(entry) != 0) clean(use, entry);
-        const bool known = cleared(use, line), fetched = fetches(use) && !known;
+        const bool known = cleared(use, line), fetched = keeps && !known;
         lines.allocate(entry, line, fetched, known ? lines.shape().whole_line() : std::uint16_t{0});
         if (fetched) fetch(use, entry);
     }

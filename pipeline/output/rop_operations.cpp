@@ -1,8 +1,6 @@
 // What a ROP group does to the pixels of a quad; each operation returns the cycles it takes.
 #include "pipeline/output/rop.hpp"
 
-#include "pipeline/functional/colour_format.hpp"
-
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -17,31 +15,41 @@ std::uint32_t Rop::cycles_for(std::uint32_t bytes) const {
 std::uint32_t Rop::run_depth_colour(const Queued& queued) {
     const Quad& quad = pass_->stream->quads[queued.task.quad];
     const std::uint32_t block = pass_->layout.block_of(quad.x, quad.y);
-    std::uint32_t kept = 0; // mask
+    const RasterState& state = pass_->states.of(*pass_->stream, queued.task.quad);
+    const SurfaceUse& use = use_of_quad(queued.task.quad);
+    std::uint32_t kept = 0, written = 0; // masks: that passed, whose depth or stencil was stored
     for (std::uint32_t pixel = 0; pixel < 4; ++pixel) {
         if ((queued.task.mask >> pixel & 1) == 0) continue;
         const std::size_t at = pass_->place(quad, pixel);
         const DepthCode code = depth_code(pass_->depth_format, pass_->stream->depths[queued.task.quad][pixel]);
         if (pass_->farthest) capture_farthest(queued.task.quad, at, code);
-        if (pass_->depth.test && !depth_less(code, surfaces_.fixed->depth[at])) {
-            ++stats_.depth_failed;
-            continue;
+        if (use.depth) {
+            const FragmentTest test = test_pixel(state, queued.task.quad, at, code);
+            written |= (test.written ? 1U : 0U) << pixel;
+            if (!test.passed()) continue;
         }
         ++stats_.depth_passed;
         kept |= 1U << pixel;
-        if (pass_->depth.write) surfaces_.fixed->depth[at] = code;
         surfaces_.fixed->winner[at] = queued.task.quad;
-        if (pass_->colour_write && !surfaces_.fixed->colour.empty()) write_colour(queued.task.quad, pixel, at);
+        if (use.colour && !surfaces_.fixed->colour.empty()) store_colour(state, queued.task.quad, pixel, at);
     }
-    const std::uint32_t changed = pass_->farthest ? queued.task.mask : kept;
-    if (pass_->depth.write) depth_tiles_.mark_dirty(queued.entry[0], depth_tiles_.shape().in_line(block, changed));
-    if (pass_->colour_write) colour_tiles_.mark_dirty(queued.entry[1], colour_tiles_.shape().in_line(block, kept));
-    const auto passed = static_cast<std::uint32_t>(std::popcount(kept));
-    const auto fragments = static_cast<std::uint32_t>(std::popcount(queued.task.mask));
-    const std::uint32_t blended = pass_->blend == BlendMode::replace ? 1 : 2; // reads the colour, too
-    return cycles_for((pass_->depth.test ? fragments * pass_->depth_bytes : 0) +
-                      (pass_->depth.write ? passed * pass_->depth_bytes : 0) +
-                      (pass_->colour_write ? passed * blended * pass_->colour_bytes : 0));
+    const std::uint32_t changed = pass_->farthest ? queued.task.mask : written;
+    if (use.depth) depth_tiles_.mark_dirty(queued.entry[0], depth_tiles_.shape().in_line(block, changed));
+    if (use.colour) colour_tiles_.mark_dirty(queued.entry[1], colour_tiles_.shape().in_line(block, kept));
+    const auto count = [](std::uint32_t pixels) { return static_cast<std::uint32_t>(std::popcount(pixels)); };
+    const std::uint32_t read = use.reads_depth ? count(queued.task.mask) : 0;
+    return cycles_for((read + count(written)) * pass_->depth_bytes +
+                      (use.colour ? count(kept) * (use.keeps_colour ? 2 : 1) * pass_->colour_bytes : 0));
+}
+
+FragmentTest Rop::test_pixel(const RasterState& state, QuadId quad, std::size_t at, DepthCode incoming) {
+    FixedSurfaces& fixed = *surfaces_.fixed;
+    const bool front = state.stencil.test && shows_front(state, *pass_->stream, quad);
+    const FragmentTest test = test_fragment(state, front, incoming, fixed.depth.empty() ? nullptr : &fixed.depth[at],
+                                            fixed.stencil.empty() ? nullptr : &fixed.stencil[at]);
+    if (test.stencil_failed) ++stats_.stencil_failed;
+    if (test.depth_failed) ++stats_.depth_failed;
+    return test;
 }
 
 // MAX blending of depths keeps the farthest; of equal ones the last, as it lies behind the others.
@@ -51,11 +59,11 @@ void Rop::capture_farthest(QuadId quad, std::size_t at, DepthCode code) {
     surfaces_.fixed->far_winner[at] = quad;
 }
 
-void Rop::write_colour(QuadId quad, std::uint32_t pixel, std::size_t at) {
+void Rop::store_colour(const RasterState& state, QuadId quad, std::uint32_t pixel, std::size_t at) {
     glm::vec4 source = pass_->stream->colours[quad][pixel];
-    if (pass_->blend != BlendMode::replace) source.a *= pass_->frame->opacity;
+    if (state.blend[0].enabled) source.a *= pass_->frame->opacity;
     glm::vec4& stored = surfaces_.fixed->colour[at];
-    stored = write_through(pass_->frame->colour_format, pass_->blend, source, stored);
+    stored = write_colour(pass_->colour_format, state.blend[0], state.write_mask[0], source, stored);
 }
 
 // Books the store of one pixel; `oldest` becomes the version of the oldest render target it was computed from.

@@ -64,8 +64,8 @@ struct RopParams {
 static_assert(sim::fully_described<RopParams>);
 
 struct RopStats {
-    sim::Counter quads, fragments, depth_passed, depth_failed, stores, program_runs, program_cycles, insertions,
-        interlock_stalls, kbuffer_reads, kbuffer_reads_from_tiles, atomics, counter_atomics, kept, not_kept,
+    sim::Counter quads, fragments, depth_passed, depth_failed, stencil_failed, stores, program_runs, program_cycles,
+        insertions, interlock_stalls, kbuffer_reads, kbuffer_reads_from_tiles, atomics, counter_atomics, kept, not_kept,
         passed_over, hazards_detected, hazards_overlooked, clears, copies, resolves;
     sim::HighWater queue_max;
     TileCacheStats depth_tiles, colour_tiles, kbuffer_tiles;
@@ -75,8 +75,9 @@ struct RopStats {
         return std::tuple{
             sim::field<&S::quads>("Quads executed").unit("quads"),
             sim::field<&S::fragments>("Fragments executed").unit("fragments"),
-            sim::field<&S::depth_passed>("Fragments that passed the depth test").unit("fragments"),
-            sim::field<&S::depth_failed>("Fragments that failed it").unit("fragments"),
+            sim::field<&S::depth_passed>("Fragments that passed stencil and depth test").unit("fragments"),
+            sim::field<&S::depth_failed>("Fragments that failed the depth test").unit("fragments"),
+            sim::field<&S::stencil_failed>("Fragments that failed the stencil test").unit("fragments"),
             sim::field<&S::stores>("Pixels stored with values computed by a shader").unit("fragments"),
             sim::field<&S::program_runs>("Fragments run through the blender's program").unit("fragments"),
             sim::field<&S::program_cycles>("Cycles the blenders worked").unit("cycles"),

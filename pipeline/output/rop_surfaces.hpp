@@ -14,8 +14,9 @@ namespace pipeline {
 /// What the fixed-function ROP reads and writes, in row order; each pixel is touched by the group that owns it.
 struct FixedSurfaces {
     std::vector<DepthCode> depth;
-    std::vector<QuadId> winner;    ///< ~0 = cleared
-    std::vector<glm::vec4> colour; ///< linear RGBA, as the colour format holds it; empty when no pass writes colour
+    std::vector<std::uint8_t> stencil; ///< empty when the depth format has none
+    std::vector<QuadId> winner;        ///< ~0 = cleared
+    std::vector<glm::vec4> colour;     ///< linear RGBA, as the colour format holds it; empty when no pass writes colour
     // Where a pass captures the farthest fragment, too.
     std::vector<DepthCode> far_depth; ///< 0 = cleared
     std::vector<QuadId> far_winner;

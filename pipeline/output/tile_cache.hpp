@@ -79,6 +79,10 @@ class TileCache {
     /// Puts `line` into `entry`, whose old content must be clean or written back by the caller. A pending one is whole
     /// when filled() is called; else the `valid` pixels are there.
     void allocate(std::uint32_t entry, std::uint32_t line, bool pending, std::uint16_t valid);
+    /// All pixels of the line are on chip.
+    bool whole(std::uint32_t entry) const { return entries_[entry].valid == shape_.whole_line(); }
+    /// The missing pixels of a line come beside those that were stored here.
+    void await(std::uint32_t entry) { entries_[entry].pending = true; }
     void filled(std::uint32_t entry) {
         entries_[entry].pending = false;
         entries_[entry].valid = shape_.whole_line();

@@ -58,8 +58,10 @@ std::uint32_t EarlyDepthTest::before_last_entry(const QuadTask& task) const {
 std::uint32_t EarlyDepthTest::before_surface(const QuadTask& task) const {
     if (pass_->read_only_depth == nullptr) return task.mask;
     return kept_samples(task, [this](QuadId id, std::uint32_t pixel) {
+        const DepthState& test = pass_->read_only_states.of(*pass_->stream, id).depth;
+        if (!test.test) return true;
         const DepthCode code = depth_code(pass_->read_only_format, pass_->stream->depths[id][pixel]);
-        return depth_less(code, (*pass_->read_only_depth)[pass_->place(pass_->stream->quads[id], pixel)]);
+        return passes(test.compare, code, (*pass_->read_only_depth)[pass_->place(pass_->stream->quads[id], pixel)]);
     });
 }
 

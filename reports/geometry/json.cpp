@@ -3,6 +3,9 @@
 #include "reports/result.hpp"
 #include "reports/validation/error_report.hpp"
 #include "reports/validation/null_models.hpp"
+#include "sim/described_json.hpp"
+
+#include <nlohmann/json.hpp>
 
 namespace reports {
 
@@ -44,7 +47,7 @@ ordered_json case_json(const GeometryCase& one) {
             {"steps", std::move(steps)},
             {"draws", std::move(draws)},
             {"draws_not_listed", listed ? 0 : one.result.draws.size()},
-            {"stages", one.result.stages.is_null() ? ordered_json::object() : one.result.stages}};
+            {"stages", *one.result.stages}};
 }
 
 } // namespace

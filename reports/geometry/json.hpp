@@ -4,7 +4,7 @@
 #include "reports/geometry/advice.hpp"
 #include "reports/geometry/calibration.hpp"
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 namespace reports {
 

@@ -104,7 +104,8 @@ std::string advice_text(const GeometryAdvice& advice, TerminalStyle style) {
                          sim::enum_name(advice.submission), advice.gpu, sim::enum_name(advice.fidelity)),
              style.columns, 2);
     const double share = advice.cases.front().result.share_sampled;
-    if (share < 1) text += fmt::format("Counts are taken from {} of the triangles.\n", percent_text(share));
+    if (share < 1)
+        text += wrap(fmt::format("Counts are taken from {} of the triangles.", percent_text(share)), style.columns, 2);
     text += "\n" + cases_text(advice, style) + "\n" + demand_text(advice, style) + "\n" + steps_text(advice, style);
     if (!advice.left_out.empty()) text += "Left out:\n";
     for (const pipeline::LeftOut& item : advice.left_out)

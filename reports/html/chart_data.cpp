@@ -2,6 +2,8 @@
 #include "reports/run_numbers.hpp"
 #include "sim/activity.hpp"
 
+#include <nlohmann/json.hpp>
+
 namespace reports {
 
 using nlohmann::ordered_json;
@@ -12,7 +14,7 @@ namespace {
 // Stage -> fractions of time, in the order of sim::activity_names.
 ordered_json stalls_json(const RunResult& run) {
     ordered_json stages = ordered_json::array();
-    for (const auto& stage : run.stalls.items()) {
+    for (const auto& stage : run.stalls->items()) {
         ordered_json fractions = ordered_json::array();
         for (const std::string_view activity : sim::activity_names)
             fractions.push_back(stage.value().value(activity, 0.0));
@@ -23,7 +25,7 @@ ordered_json stalls_json(const RunResult& run) {
 
 ordered_json bytes_json(const RunResult& run) {
     ordered_json links = ordered_json::object();
-    for (const auto& link : run.bytes.items())
+    for (const auto& link : run.bytes->items())
         if (const auto bytes = bytes_per_fragment(run, link.key())) links[link.key()] = *bytes;
     return links;
 }

@@ -1,6 +1,7 @@
 #include "reports/html/markup.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace reports {
 
@@ -41,7 +42,9 @@ std::string script_json(const nlohmann::ordered_json& json) {
 }
 
 std::string html_table(const std::vector<std::string>& header, const std::vector<std::vector<HtmlCell>>& rows) {
-    std::string html = "<div class=\"scroll\"><table><thead><tr>";
+    constexpr std::size_t many = 12; // columns that a page has room for in its usual letters
+    std::string html =
+        fmt::format("<div class=\"scroll\"><table{}><thead><tr>", header.size() > many ? " class=\"many\"" : "");
     for (std::size_t i = 0; i < header.size(); ++i) {
         const bool numbers = !rows.empty() && rows.front().at(i).kind.starts_with("number");
         html += fmt::format("<th{}>{}</th>", numbers ? " class=\"number\"" : "", escape_html(header[i]));

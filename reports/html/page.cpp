@@ -11,6 +11,7 @@
 #include "ropsim_page_js.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace reports {
 

@@ -6,6 +6,7 @@
 #include "ropsim_plots_js.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace reports {
 

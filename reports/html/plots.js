@@ -9,6 +9,18 @@
   Chart.defaults.maintainAspectRatio = false;
   const colours = ["#3b6fb6", "#e08a2e", "#4c9a5b", "#b0457a", "#7a62b8", "#8a6d3b", "#4aa3a3", "#777c88"];
   const axis = text => ({ title: { display: true, text: text } });
+  const units = [[1e12, "T"], [1e9, "G"], [1e6, "M"], [1e3, "k"]];
+
+  // 1e-5, 0.02, 500, 20 k, 3 M
+  function short(number) {
+    if (number !== 0 && Math.abs(number) < 1e-3) return Number(number.toPrecision(6)).toExponential();
+    const unit = units.find(([size]) => Math.abs(number) >= 1e4 && Math.abs(number) >= size);
+    return unit ? Number((number / unit[0]).toPrecision(6)) + " " + unit[1] : String(Number(number.toPrecision(6)));
+  }
+  // Labels for as many ticks as Chart.js has room for.
+  function logarithmicTick(number, index, ticks) {
+    return Chart.Ticks.formatters.logarithmic.call(this, number, index, ticks) === "" ? "" : short(number);
+  }
 
   plots.forEach(plot => {
     const box = document.createElement("div");
@@ -32,6 +44,7 @@
     const numeric = !plot.bars && numbers.every(n => Number.isFinite(n));
     const x = axis(plot.x);
     if (numeric) x.type = plot.logarithmic ? "logarithmic" : "linear";
+    if (x.type === "logarithmic") x.ticks = { callback: logarithmicTick };
     const datasets = plot.lines.map((line, i) => ({
       label: line.name,
       data: numeric ? line.values.map((value, point) => ({ x: numbers[point], y: value })) : line.values,

@@ -4,7 +4,7 @@
 #include "reports/comparison_result.hpp"
 #include "reports/picture_files.hpp"
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 

@@ -5,7 +5,7 @@
 #include "reports/peeling/validation.hpp"
 #include "reports/terminal_table.hpp"
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 namespace reports {

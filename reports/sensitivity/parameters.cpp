@@ -2,6 +2,7 @@
 
 #include "reports/flatten.hpp"
 #include "sim/check.hpp"
+#include "sim/described_json.hpp"
 #include "sim/suggest.hpp"
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <set>
 
 namespace reports {
@@ -54,8 +56,8 @@ void add_number(std::vector<SensitivityStep>& steps, const sim::FieldInfo& field
                 Direction direction) {
     const Bounds bounds = bounds_of(field.range);
     double value = std::clamp(to, bounds.low, bounds.high);
-    if (field.type == "integer") value = std::round(value);
-    std::string text = field.type == "integer" ? fmt::format("{:.0f}", value) : sim::number_text(value);
+    if (field.type == "whole number") value = std::round(value);
+    std::string text = field.type == "whole number" ? fmt::format("{:.0f}", value) : sim::number_text(value);
     if (number_in(text) != number_in(from)) steps.push_back({std::move(text), direction, {}, {}});
 }
 
@@ -130,7 +132,7 @@ std::vector<KnownParameter> known_parameters(const ComparisonInput& input) {
     std::set<std::string> seen;
     for (const ComparedDesign& row : input.designs) {
         if (!seen.insert(row.variant.design).second) continue;
-        for (const auto& [path, value] : flatten(row.design->parameters()))
+        for (const auto& [path, value] : flatten(sim::to_json(row.design->parameters())))
             values[fmt::format("{}.{}", row.variant.design, path)] = cell_text(value);
         for (const models::DesignInfo& info : models::designs())
             if (info.id == row.variant.design)
@@ -166,7 +168,7 @@ std::string meant_value(const KnownParameter& one, const ComparisonInput& input)
 
 // The sizes and rates of a design are assumed as those of the GPU are; its switches and rules make another design.
 bool sizes_a_design(const KnownParameter& one) {
-    return (one.field.type == "integer" || one.field.type == "number") && number_in(one.value).value_or(0) != 0;
+    return (one.field.type == "whole number" || one.field.type == "number") && number_in(one.value).value_or(0) != 0;
 }
 
 } // namespace
@@ -184,7 +186,7 @@ std::vector<SensitivityStep> steps_of(const sim::FieldInfo& field, const std::st
     } else if (field.type == "choice") {
         for (std::string& choice : choices_of(field.range))
             if (choice != value) steps.push_back({std::move(choice), Direction::other, {}, {}});
-    } else if (const auto number = number_in(value); field.type == "integer" || field.type == "number") {
+    } else if (const auto number = number_in(value); field.type == "whole number" || field.type == "number") {
         if (!number) return steps;
         if (*number == 0) {
             add_number(steps, field, value, zero_step(field.unit), Direction::up);

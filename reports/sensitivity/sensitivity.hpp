@@ -9,7 +9,7 @@
 #include "reports/csv.hpp"
 #include "reports/terminal_table.hpp"
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>

@@ -2,7 +2,7 @@
 // arithmetic.
 #include "models/programs/mlab.hpp"
 #include "models/programs/order_and_blend.hpp"
-#include "pipeline/functional/colour_format.hpp"
+#include "pipeline/functional/fragment_operations.hpp"
 #include "pipeline/functional/number_formats.hpp"
 #include "reports/stability/catalogue.hpp"
 #include "reports/stability/floats.hpp"
@@ -15,8 +15,8 @@
 
 namespace reports::stability::blending {
 
-using pipeline::BlendMode;
-using pipeline::ColourFormat;
+namespace blends = pipeline::blends;
+using pipeline::SurfaceFormat;
 using Codes = glm::tvec4<std::uint8_t>;
 
 void add_unorm8(std::vector<Case>& cases) {
@@ -77,8 +77,8 @@ void add_products(std::vector<Case>& cases) {
                          for (int alpha = 0; alpha < 256; ++alpha)
                              for (int target = 0; target < 256; ++target) {
                                  const int source = (alpha * 7 + target * 13) % 256;
-                                 const Codes result = pipeline::blend(
-                                     BlendMode::over,
+                                 const Codes result = pipeline::blended(
+                                     blends::over(),
                                      Codes(static_cast<std::uint8_t>(source), 0, 255, static_cast<std::uint8_t>(alpha)),
                                      Codes(static_cast<std::uint8_t>(target), 255, 0, 0));
                                  finding.error(result.r - exact_over(source, alpha, target));
@@ -87,10 +87,10 @@ void add_products(std::vector<Case>& cases) {
                              }
                      }});
     const auto opacity = [](Finding& finding, float alpha, bool keeps) {
-        for (const ColourFormat format : {ColourFormat::rgba8, ColourFormat::rgba16f, ColourFormat::rgba32f}) {
+        for (const SurfaceFormat format : {SurfaceFormat::rgba8, SurfaceFormat::rgba16f, SurfaceFormat::rgba32f}) {
             const glm::vec4 stored = pipeline::through_format(format, {0.2F, 0.4F, 0.8F, 0.6F}),
                             source(0.9F, 0.1F, 0.3F, alpha);
-            const glm::vec4 result = pipeline::write_through(format, BlendMode::over, source, stored);
+            const glm::vec4 result = pipeline::write_colour(format, blends::over(), 15, source, stored);
             const glm::vec4 expected = keeps ? stored : pipeline::through_format(format, source);
             for (int i = 0; i < 3; ++i) finding.error(ulps(result[i], expected[i]));
         }
@@ -100,9 +100,10 @@ void add_products(std::vector<Case>& cases) {
                      [opacity](Finding& finding) { opacity(finding, 0.0F, true); }});
     cases.push_back({"blending.opacity-half", Side::at, "a fragment of opacity 1/2 of equal colour, in float formats",
                      "that colour, bit for bit", "ulp", 0.0, [](Finding& finding) {
-                         for (const ColourFormat format : {ColourFormat::rgba16f, ColourFormat::rgba32f}) {
+                         for (const SurfaceFormat format : {SurfaceFormat::rgba16f, SurfaceFormat::rgba32f}) {
                              const glm::vec4 colour(0.75F, 1.0F / 1024.0F, 60000.0F, 0.5F);
-                             const glm::vec4 result = pipeline::write_through(format, BlendMode::over, colour, colour);
+                             const glm::vec4 result =
+                                 pipeline::write_colour(format, blends::over(), 15, colour, colour);
                              for (int i = 0; i < 3; ++i)
                                  finding.error(ulps(result[i], pipeline::through_format(format, colour)[i]));
                          }
@@ -114,8 +115,8 @@ void add_products(std::vector<Case>& cases) {
 
 void add_saturation(std::vector<Case>& cases) {
     const auto sum = [](Finding& finding, int a, int b) {
-        const Codes result =
-            pipeline::blend(BlendMode::add, Codes(static_cast<std::uint8_t>(a)), Codes(static_cast<std::uint8_t>(b)));
+        const Codes result = pipeline::blended(blends::of(blends::sum), Codes(static_cast<std::uint8_t>(a)),
+                                               Codes(static_cast<std::uint8_t>(b)));
         finding.error(result.r - std::min(a + b, 255));
     };
     cases.push_back(
@@ -132,28 +133,28 @@ void add_saturation(std::vector<Case>& cases) {
                              sum(finding, a, 255);
                          }
                      }});
-    const auto largest = [](Finding& finding, ColourFormat format, float a, float b, float expected) {
-        const glm::vec4 result = pipeline::write_through(format, BlendMode::add, glm::vec4(a),
-                                                         pipeline::through_format(format, glm::vec4(b)));
+    const auto largest = [](Finding& finding, SurfaceFormat format, float a, float b, float expected) {
+        const glm::vec4 result = pipeline::write_colour(format, blends::of(blends::sum), 15, glm::vec4(a),
+                                                        pipeline::through_format(format, glm::vec4(b)));
         finding.error(ulps(result.r, expected));
     };
     cases.push_back({"blending.add-floats-below", Side::below, "sums just below what float formats hold", "the sum",
                      "ulp", 0.0, [largest](Finding& finding) {
-                         largest(finding, ColourFormat::rgba16f, 32.0F, 65440.0F, 65472.0F);
-                         largest(finding, ColourFormat::rgba32f, 0x1p126F, 0x1p126F, 0x1p127F);
+                         largest(finding, SurfaceFormat::rgba16f, 32.0F, 65440.0F, 65472.0F);
+                         largest(finding, SurfaceFormat::rgba32f, 0x1p126F, 0x1p126F, 0x1p127F);
                      }});
     cases.push_back({"blending.add-floats-at", Side::at, "sums that are the largest finite value", "that value", "ulp",
                      0.0, [largest](Finding& finding) {
-                         largest(finding, ColourFormat::rgba16f, 32.0F, 65472.0F, 65504.0F);
-                         largest(finding, ColourFormat::rgba32f, 0x1p127F, 0x1.FFFFFCp126F * 1.0F + 0x1p104F - 0x1p104F,
-                                 0x1p127F + 0x1.FFFFFCp126F);
+                         largest(finding, SurfaceFormat::rgba16f, 32.0F, 65472.0F, 65504.0F);
+                         largest(finding, SurfaceFormat::rgba32f, 0x1p127F,
+                                 0x1.FFFFFCp126F * 1.0F + 0x1p104F - 0x1p104F, 0x1p127F + 0x1.FFFFFCp126F);
                      }});
     cases.push_back({"blending.add-floats-above", Side::above, "sums beyond, infinite and NaN sources",
                      "the largest finite value; 0 for NaN", "ulp", 0.0, [largest](Finding& finding) {
-                         largest(finding, ColourFormat::rgba16f, 65504.0F, 65504.0F, 65504.0F);
-                         largest(finding, ColourFormat::rgba32f, largest_float, largest_float, largest_float);
-                         for (const ColourFormat format : {ColourFormat::rgba16f, ColourFormat::rgba32f}) {
-                             const float most = format == ColourFormat::rgba16f ? 65504.0F : largest_float;
+                         largest(finding, SurfaceFormat::rgba16f, 65504.0F, 65504.0F, 65504.0F);
+                         largest(finding, SurfaceFormat::rgba32f, largest_float, largest_float, largest_float);
+                         for (const SurfaceFormat format : {SurfaceFormat::rgba16f, SurfaceFormat::rgba32f}) {
+                             const float most = format == SurfaceFormat::rgba16f ? 65504.0F : largest_float;
                              largest(finding, format, infinity, 1.0F, most);
                              largest(finding, format, -infinity, 1.0F, -most);
                              largest(finding, format, not_a_number, 1.0F, 0.0F);
@@ -178,8 +179,8 @@ void add_many_layers(std::vector<Case>& cases) {
                          int exact = 255;
                          for (int i = 0; i < many; ++i) {
                              const int source = i % 2 == 0 ? 0 : 64;
-                             stored = pipeline::write_through(
-                                 ColourFormat::rgba8, BlendMode::over,
+                             stored = pipeline::write_colour(
+                                 SurfaceFormat::rgba8, blends::over(), 15,
                                  glm::vec4(glm::vec3(static_cast<float>(source) / 255.0F), 16.0F / 255.0F), stored);
                              exact = exact_over(source, 16, exact);
                              finding.error(std::round(static_cast<double>(stored.r) * 255.0) - exact);
@@ -192,8 +193,8 @@ void add_many_layers(std::vector<Case>& cases) {
              for (const float alpha : {0x1p-4F, 0x1p-7F, 0x1p-10F}) {
                  glm::vec4 stored(1.0F);
                  for (int i = 0; i < many; ++i)
-                     stored = pipeline::write_through(ColourFormat::rgba32f, BlendMode::over,
-                                                      glm::vec4(glm::vec3(i % 2 == 0 ? 0.0F : 0.25F), alpha), stored);
+                     stored = pipeline::write_colour(SurfaceFormat::rgba32f, blends::over(), 15,
+                                                     glm::vec4(glm::vec3(i % 2 == 0 ? 0.0F : 0.25F), alpha), stored);
                  const double bound = 3.0 / static_cast<double>(alpha) * 0x1p-24;
                  finding.error(
                      relative_error(static_cast<double>(stored.r), exact_accumulation(static_cast<Quad>(alpha), true)) /
@@ -207,8 +208,8 @@ void add_many_layers(std::vector<Case>& cases) {
          [](Finding& finding) {
              glm::vec4 stored(1.0F);
              for (int i = 0; i < many; ++i)
-                 stored = pipeline::write_through(ColourFormat::rgba16f, BlendMode::over,
-                                                  glm::vec4(glm::vec3(0.25F), 0x1p-10F), stored);
+                 stored = pipeline::write_colour(SurfaceFormat::rgba16f, blends::over(), 15,
+                                                 glm::vec4(glm::vec3(0.25F), 0x1p-10F), stored);
              // A step moves C by (C - 1/4) / 1024; the quantum in [0.5, 1) is 2^-11, in [0.25, 0.5) 2^-12.
              const double exact = static_cast<double>(exact_accumulation(0x1p-10F, false));
              finding.error((static_cast<double>(stored.r) - exact) * 255.0);

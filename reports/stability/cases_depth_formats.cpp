@@ -1,6 +1,7 @@
 // Depth surfaces and 16-bit floats at their quanta, and what is no depth at all.
-#include "pipeline/functional/depth_format.hpp"
 #include "pipeline/functional/number_formats.hpp"
+#include "pipeline/functional/surface_texel.hpp"
+#include "pipeline/raster_state.hpp"
 #include "reports/stability/catalogue.hpp"
 #include "reports/stability/floats.hpp"
 #include "reports/stability/quad.hpp"
@@ -12,14 +13,18 @@ namespace reports::stability::depth_formats {
 
 using pipeline::depth_code;
 using pipeline::depth_value;
-using pipeline::DepthFormat;
+using pipeline::SurfaceFormat;
 
-std::int64_t steps_of(DepthFormat format) { return format == DepthFormat::d16 ? 65535 : 16777215; }
-const char* name_of(DepthFormat format) { return format == DepthFormat::d16 ? "d16" : "d24"; }
+bool less(pipeline::DepthCode incoming, pipeline::DepthCode stored) {
+    return passes(pipeline::DepthState().compare, incoming, stored);
+}
+
+std::int64_t steps_of(SurfaceFormat format) { return format == SurfaceFormat::d16 ? 65535 : 16777215; }
+const char* name_of(SurfaceFormat format) { return format == SurfaceFormat::d16 ? "d16" : "d24"; }
 
 /// The largest float below (code + 1/2) / steps, in exact arithmetic: x * 2 * steps is an integer of 49 bits times a
 /// power of two, which a Quad holds.
-float below_boundary(DepthFormat format, std::int64_t code) {
+float below_boundary(SurfaceFormat format, std::int64_t code) {
     auto x = static_cast<float>((static_cast<double>(code) + 0.5) / static_cast<double>(steps_of(format)));
     const Quad boundary = 2 * Quad(code) + 1;
     while (Quad(x) * 2 * steps_of(format) >= boundary) x = next_down(x);
@@ -29,7 +34,7 @@ float below_boundary(DepthFormat format, std::int64_t code) {
 
 /// Boundaries of a few thousand codes, the first and the last among them; `up` floats behind the last one below.
 /// In [0.5, 1) a D24 step is a float, so not every boundary there has a float on either side of it.
-void boundaries(Finding& finding, DepthFormat format, bool above) {
+void boundaries(Finding& finding, SurfaceFormat format, bool above) {
     const std::int64_t last = steps_of(format) - 1, step = std::max<std::int64_t>(1, last / 4099);
     for (std::int64_t code = 0; code <= last; code = code < last && code + step > last ? last : code + step) {
         const float below = below_boundary(format, code);
@@ -44,15 +49,15 @@ void boundaries(Finding& finding, DepthFormat format, bool above) {
     }
 }
 
-void every_code_comes_back(Finding& finding, DepthFormat format) {
+void every_code_comes_back(Finding& finding, SurfaceFormat format) {
     const auto last = static_cast<std::uint32_t>(steps_of(format));
-    const std::uint32_t step = format == DepthFormat::d16 ? 1 : 13; // 13 and 2^24 - 1 have no common factor
+    const std::uint32_t step = format == SurfaceFormat::d16 ? 1 : 13; // 13 and 2^24 - 1 have no common factor
     for (std::uint32_t code = 0; code <= last; code += step)
         finding.error(static_cast<double>(depth_code(format, depth_value(format, code))) - code);
     finding.error(static_cast<double>(depth_code(format, depth_value(format, last))) - last);
 }
 
-Case tie(DepthFormat format) {
+Case tie(SurfaceFormat format) {
     return {fmt::format("depth-formats.{}-tie", name_of(format)),
             Side::at,
             "a depth exactly between two codes: 0.5 is half of an odd number of steps",
@@ -66,7 +71,7 @@ Case tie(DepthFormat format) {
             }};
 }
 
-void add_fixed_point(std::vector<Case>& cases, DepthFormat format) {
+void add_fixed_point(std::vector<Case>& cases, SurfaceFormat format) {
     const std::string name = name_of(format), unit = fmt::format("D{} units", name.substr(1));
     cases.push_back({fmt::format("depth-formats.{}-below-half", name), Side::below,
                      "the last float below the middle between two codes", "the lower code, for 4,099 codes", unit, 0.0,
@@ -90,7 +95,7 @@ void add_fixed_point(std::vector<Case>& cases, DepthFormat format) {
 }
 
 void add_d32f(std::vector<Case>& cases) {
-    const auto code = [](float x) { return depth_code(DepthFormat::d32f, x); };
+    const auto code = [](float x) { return depth_code(SurfaceFormat::d32f, x); };
     cases.push_back({"depth-formats.d32f-below-zero", Side::below, "the float before 0, and -0", "the code of +0",
                      "ulp", 0.0, [code](Finding& finding) {
                          finding.error(code(-smallest_float));
@@ -108,24 +113,24 @@ void add_d32f(std::vector<Case>& cases) {
                          for (const float x : {next_up(1.0F), infinity}) finding.error(code(x) - one);
                          finding.error(code(not_a_number));
                      }});
-    cases.push_back({"depth-formats.codes-order-as-depths", Side::whole, "the depth test compares codes, not depths",
-                     "of two depths the nearer never has the greater code, in all formats", "", 0.0,
-                     [](Finding& finding) {
-                         for (const DepthFormat format : {DepthFormat::d16, DepthFormat::d24, DepthFormat::d32f}) {
-                             pipeline::DepthCode before = 0;
-                             for (float x = 0.0F; x <= 1.0F; x = next_up(x * 1.0001F)) {
-                                 const pipeline::DepthCode now = depth_code(format, x);
-                                 finding.require(now >= before, fmt::format("code of {} grows", x));
-                                 finding.require(!pipeline::depth_less(now, before), "no later one is less");
-                                 before = now;
-                             }
-                         }
-                     }});
+    cases.push_back(
+        {"depth-formats.codes-order-as-depths", Side::whole, "the depth test compares codes, not depths",
+         "of two depths the nearer never has the greater code, in all formats", "", 0.0, [](Finding& finding) {
+             for (const SurfaceFormat format : {SurfaceFormat::d16, SurfaceFormat::d24, SurfaceFormat::d32f}) {
+                 pipeline::DepthCode before = 0;
+                 for (float x = 0.0F; x <= 1.0F; x = next_up(x * 1.0001F)) {
+                     const pipeline::DepthCode now = depth_code(format, x);
+                     finding.require(now >= before, fmt::format("code of {} grows", x));
+                     finding.require(!less(now, before), "no later one is less");
+                     before = now;
+                 }
+             }
+         }});
     cases.push_back({"depth-formats.equal-is-not-less", Side::at, "two equal codes under the strict test",
                      "the stored one stays", "", 0.0, [](Finding& finding) {
                          for (const pipeline::DepthCode x : {0U, 1U, 65535U, 16777215U})
-                             finding.require(!pipeline::depth_less(x, x), fmt::format("{} is not less", x));
-                         finding.require(pipeline::depth_less(0, 1), "0 is less than 1");
+                             finding.require(!less(x, x), fmt::format("{} is not less", x));
+                         finding.require(less(0, 1), "0 is less than 1");
                      }});
 }
 
@@ -194,8 +199,8 @@ void add_halves(std::vector<Case>& cases) {
 
 std::vector<reports::stability::Case> reports::stability::depth_format_cases() {
     std::vector<Case> cases;
-    depth_formats::add_fixed_point(cases, pipeline::DepthFormat::d16);
-    depth_formats::add_fixed_point(cases, pipeline::DepthFormat::d24);
+    depth_formats::add_fixed_point(cases, pipeline::SurfaceFormat::d16);
+    depth_formats::add_fixed_point(cases, pipeline::SurfaceFormat::d24);
     depth_formats::add_d32f(cases);
     depth_formats::add_halves(cases);
     return cases;

@@ -182,14 +182,18 @@ void add_interpolation(std::vector<Case>& cases) {
                          weights(finding, {1e15F, 1, 1e15F});
                      }});
     cases.push_back({"interpolation.equal-attributes", Side::whole,
-                     "an attribute that is the same at all corners, w from 1e-10 to 1e10",
+                     "an attribute that is the same at all corners, w equal, of one size, and from 1e-10 to 1e10",
                      "exactly that value in every pixel", "ulp", 0.0, [](Finding& finding) {
-                         const Corners corners = corners_of({{{-1, -1}, {-1, 130}, {130, -1}}}, {1e-10F, 1.0F, 1e10F});
-                         const pipeline::AttributePlanes planes(corners.raster, corners.vertices);
-                         for (int y = 0; y < 64; y += 2)
-                             for (const float value : {0.1F, -7e30F, smallest_float})
-                                 for (const float got : planes.at(2 * (y / 4), y, 15).interpolate(value, value, value))
-                                     finding.error(ulps(got, value));
+                         for (const std::array<float, 3>& w :
+                              {std::array{1.0F, 1.0F, 1.0F}, {1.0F, 3.0F, 7.0F}, {1e-10F, 1.0F, 1e10F}}) {
+                             const Corners corners = corners_of({{{-1, -1}, {-1, 130}, {130, -1}}}, w);
+                             const pipeline::AttributePlanes planes(corners.raster, corners.vertices);
+                             for (int y = 0; y < 64; y += 2)
+                                 for (const float value : {0.1F, -7e30F, smallest_float})
+                                     for (const float got :
+                                          planes.at(2 * (y / 4), y, 15).interpolate(value, value, value))
+                                         finding.error(ulps(got, value));
+                         }
                      }});
     cases.push_back(
         {"interpolation.within-range", Side::whole,
@@ -210,21 +214,24 @@ void add_interpolation(std::vector<Case>& cases) {
                  });
              }
          }});
-    cases.push_back(
-        {"interpolation.beyond-eye", Side::above,
-         "helper pixels beyond the plane of the eye: 1/w changes its sign next to a covered pixel",
-         "finite weights: those of the covered pixel", "", 0.0, [](Finding& finding) {
-             const Corners corners = corners_of({{{10.5F, 10.5F}, {12, 60}, {11, 60}}}, {1e-6F, 1e6F, 1e6F});
-             const pipeline::AttributePlanes planes(corners.raster, corners.vertices);
-             for (int y = 8; y < 60; y += 2)
-                 for (int x = 8; x < 14; x += 2) {
-                     const auto got = planes.at(x, y, 8);
-                     for (std::size_t lane = 0; lane < 4; ++lane)
-                         finding.require(std::isfinite(got.of1[lane]) && std::isfinite(got.of2[lane]) &&
-                                             std::fabs(got.of1[lane]) < 1e7F,
-                                         "finite");
-                 }
-         }});
+    cases.push_back({"interpolation.beyond-eye", Side::above,
+                     "helper pixels beyond the plane of the eye: 1/w changes its sign next to a covered pixel",
+                     "finite weights: those of the covered pixel", "", 0.0, [](Finding& finding) {
+                         // Half a pixel below the base of a triangle 50.5 pixels high the share of the apex is -1/101,
+                         // that of the base 102/101: with 102 as the base's w row 61 lies in the plane of the eye
+                         // itself.
+                         for (const std::array<float, 3>& w : {std::array{1e-6F, 1e6F, 1e6F}, {1.0F, 102.0F, 102.0F}}) {
+                             const Corners corners = corners_of({{{10.5F, 10.5F}, {12, 61}, {11, 61}}}, w);
+                             const pipeline::AttributePlanes planes(corners.raster, corners.vertices);
+                             pipeline::for_each_quad(corners.raster,
+                                                     [&](std::int32_t x, std::int32_t y, unsigned mask) {
+                                                         const auto got = planes.at(x, y, mask);
+                                                         for (const pipeline::Lanes& weights : {got.of1, got.of2})
+                                                             for (const float weight : weights)
+                                                                 finding.require(std::fabs(weight) < 1e7F, "finite");
+                                                     });
+                         }
+                     }});
 }
 
 pipeline::Texture texture(std::uint32_t size) {

@@ -213,6 +213,7 @@ void add_program_doors(std::vector<Case>& cases) {
                                      const std::array<float, 4> rgba{scalar, 0, 0, 1};
                                      std::array<float, 2> entry{};
                                      program->make_entry({rgba.data(), 0.5F, 0}, entry.data());
+                                     for (const float value : entry) finding.require(std::isfinite(value), "finite");
                                      program->insert(pixel.data(), entry.data());
                                  }
                                  program->drain(pixel.data());
@@ -278,7 +279,7 @@ void add_program_doors(std::vector<Case>& cases) {
 
 void add_option_doors(std::vector<Case>& cases) {
     const auto settings = [](Finding& finding, const traces::WorkloadChoice& workload, const std::string& key) {
-        for (const char* bad : {"nan", "inf", "-inf", "1e999", "NaN", "Infinity"}) {
+        for (const char* bad : {"nan", "inf", "-inf", "1e999", "1e39", "NaN", "Infinity"}) {
             finding.refuses(
                 [&] {
                     traces::WorkloadOptions options;
@@ -286,11 +287,11 @@ void add_option_doors(std::vector<Case>& cases) {
                     traces::Scene scene = triangle();
                     traces::build_frame(scene, traces::make_view(scene, "auto", 16, 16), workload, options);
                 },
-                key);
+                key + ": expected number");
         }
     };
-    cases.push_back(door("workload-settings", "nan, inf and 1e999 as opacity", "refused, with the key",
-                         [settings](Finding& finding) { settings(finding, {}, "opacity"); }));
+    cases.push_back(door("workload-settings", "nan, inf, 1e999, and 1e39, which no float holds, as opacity",
+                         "refused, with the key", [settings](Finding& finding) { settings(finding, {}, "opacity"); }));
     cases.push_back(
         door("gpu-settings", "nan, inf and 1e999 as numbers of a GPU", "refused, with the path", [](Finding& finding) {
             const Replay replay("gen:stack?n=2", {.width = 16, .height = 16, .threads = 1});
@@ -298,11 +299,12 @@ void add_option_doors(std::vector<Case>& cases) {
                 for (const char* path : {"memory.bandwidth", "clock.core_mhz"})
                     finding.refuses([&] { replay.run("blender", {fmt::format("{}={}", path, bad)}); }, path);
         }));
-    cases.push_back(door(
-        "generators", "nan, inf and 1e999 as numbers of a generator", "refused, with the key", [](Finding& finding) {
-            for (const char* bad : {"nan", "inf", "1e999"})
-                finding.refuses([&] { traces::load_scene(fmt::format("gen:slabs?gap={}", bad)); }, "gap");
-        }));
+    cases.push_back(door("generators", "nan, inf, 1e999 and 1e300 as numbers of a generator", "refused, with the key",
+                         [](Finding& finding) {
+                             for (const char* bad : {"nan", "inf", "1e999", "1e300"})
+                                 finding.refuses([&] { traces::load_scene(fmt::format("gen:slabs?gap={}", bad)); },
+                                                 "gap: expected number");
+                         }));
     cases.push_back(
         door("cameras", "nan, inf and 1e999 as eye, target and angle of a camera", "refused", [](Finding& finding) {
             const traces::Scene scene = traces::load_scene("gen:slabs");

@@ -3,6 +3,7 @@
 #include "reports/stability/replay.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace reports::stability::hardware {
 
@@ -23,11 +24,11 @@ void conserved(Finding& finding, const pipeline::RunResult& run, const std::stri
                            number_at(pass.counters, "/fragment/peel_rejects") +
                            number_at(pass.counters, "/early_depth/fragments_rejected") +
                            number_at(pass.counters, "/early_depth/fragments_beyond");
-        if (pass.counters.contains("raster"))
+        if (pass.counters->contains("raster"))
             finding.require(in == out, fmt::format("{}: {} fragments in, {} out in {}", design, in, out, pass.name));
     }
     double clients = 0.0;
-    for (const auto& link : run.bytes.items())
+    for (const auto& link : run.bytes->items())
         if (link.key().starts_with("dram_")) clients += number_at(link.value(), "/bytes");
     const double moved = number_at(run.bytes, "/dram/bytes");
     finding.require(moved > 0 && clients == moved, fmt::format("{}: {} bytes moved for {}", design, moved, clients));
@@ -135,8 +136,8 @@ void add_latencies(std::vector<Case>& cases) {
 
 void add_units(std::vector<Case>& cases) {
     cases.push_back(machine("pipes-1", Side::below, "one fragment pipe", {"fragment.pipes=1"}));
-    cases.push_back(machine("pipes-60", Side::at, "60 fragment pipes, the most there are", {"fragment.pipes=60"}));
-    cases.push_back(refused("pipes-64", Side::above, "64 fragment pipes", {"fragment.pipes=64"}, "1 to 60"));
+    cases.push_back(machine("pipes-64", Side::at, "64 fragment pipes, the most there are", {"fragment.pipes=64"}));
+    cases.push_back(refused("pipes-65", Side::above, "65 fragment pipes", {"fragment.pipes=65"}, "1 to 64"));
     cases.push_back(
         refused("partitions-0", Side::below, "no memory partition", {"memory.partitions=0"}, "memory.partitions"));
     cases.push_back(machine("partitions-1", Side::at, "one memory partition", {"memory.partitions=1"}));
@@ -165,7 +166,7 @@ void add_memory(std::vector<Case>& cases) {
                             "k-buffer caches of 16 MiB, texture caches of 1 MiB: larger than the frame",
                             {"rop.kbuffer_cache_bytes=16777216", "texture.l1_bytes=1048576"}));
     cases.push_back(refused("cache-63", Side::below, "a tile cache smaller than one line",
-                            {"rop.kbuffer_cache_bytes=63"}, "rop.kbuffer_cache_bytes"));
+                            {"rop.kbuffer_cache_bytes=63"}, "rop.kbuffer_cache_bytes: expected whole number 64 to"));
     cases.push_back(
         machine("clock-1", Side::below, "a memory clock of 1 MHz beside a core of 650", {"memory.clock_mhz=1"}));
     cases.push_back(machine("clock-uneven", Side::at, "clocks that do not divide each other: 333.333 and 650 MHz",

@@ -16,6 +16,7 @@
 #include <fmt/format.h>
 #include <map>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 namespace reports::stability::kbuffer {
 
@@ -331,8 +332,8 @@ void early_reject(Finding& finding, float depth) {
         for (std::size_t i = 0; i < 4; ++i) finding.error(ulps(run.kbuffer[i], depths[i]));
         std::uint64_t rejected = 0;
         for (const pipeline::PassResult& pass : run.passes)
-            if (pass.counters.contains("early_depth"))
-                rejected += pass.counters.at("early_depth").at("fragments_beyond").get<std::uint64_t>();
+            if (pass.counters->contains("early_depth"))
+                rejected += pass.counters->at("early_depth").at("fragments_beyond").get<std::uint64_t>();
         finding.require(rejected > 0, "some are rejected early");
     }
 }

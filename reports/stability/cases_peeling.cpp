@@ -1,7 +1,8 @@
 // Multi-pass peeling with a constant added to the captured depth (specification 004, A10 and section 6.1, items 4 to 6
 // and 10).
-#include "pipeline/functional/depth_format.hpp"
 #include "pipeline/functional/eye_depth.hpp"
+#include "pipeline/functional/surface_texel.hpp"
+#include "pipeline/raster_state.hpp"
 #include "reports/stability/catalogue.hpp"
 #include "reports/stability/floats.hpp"
 #include "reports/stability/quad.hpp"
@@ -165,8 +166,8 @@ void add_half_depths(std::vector<Case>& cases) {
                      [](Finding& finding) { finding.error(static_cast<double>(distinct_halves(0.51)) - 2.0); }});
 }
 
-pipeline::DepthFormat format_of(const std::string& name) {
-    return name == "d16" ? pipeline::DepthFormat::d16 : pipeline::DepthFormat::d24;
+pipeline::SurfaceFormat format_of(const std::string& name) {
+    return name == "d16" ? pipeline::SurfaceFormat::d16 : pipeline::SurfaceFormat::d24;
 }
 double quantum_of(const std::string& name) { return name == "d16" ? 1.0 / 65535 : 1.0 / 16777215; }
 
@@ -179,7 +180,8 @@ int first_wins(const std::string& format, double quanta) {
         const auto code = [&](double depth) {
             return pipeline::depth_code(format_of(format), static_cast<float>(depth));
         };
-        wins += pipeline::depth_less(code(near), code(near + quanta * quantum_of(format))) ? 0 : 1;
+        const auto compare = pipeline::DepthState().compare;
+        wins += passes(compare, code(near), code(near + quanta * quantum_of(format))) ? 0 : 1;
     }
     return wins;
 }

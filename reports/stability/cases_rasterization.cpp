@@ -217,9 +217,12 @@ void add_clip_planes(std::vector<Case>& cases) {
                          finding.require(all_finite(stream), "depths in [0,1]");
                      }});
     cases.push_back({"rasterization.through-eye", Side::at, "a triangle with a corner in the eye itself: w = 0",
-                     "finite depths and colours, each pixel once", "fragments", 0.0, [](Finding& finding) {
-                         for (const float w : {0.0F, 1e-40F, 1e-30F, 1e-6F}) {
-                             traces::Scene scene = world_scene({{-1, -1, -w}, {1, -1, -1}, {0, 1, -1}});
+                     "finite depths and colours, each pixel at most once", "fragments", 0.0, [](Finding& finding) {
+                         // In the plane of the eye a corner lies far aside and is clipped; in the eye itself it is
+                         // inside of all planes, and w = 0 goes on to the division.
+                         for (const auto& [aside, w] : std::array<std::array<float, 2>, 7>{
+                                  {{1, 0}, {1, 1e-40F}, {1, 1e-30F}, {1, 1e-6F}, {0, 0}, {0, 1e-40F}, {0, 1e-6F}}}) {
+                             traces::Scene scene = world_scene({{-aside, -aside, -w}, {1, -1, -1}, {0, 1, -1}});
                              pipeline::View view = pixel_view(64, 64);
                              view.projection = glm::mat4(0.0F);
                              view.projection[0][0] = view.projection[1][1] = 1.0F;

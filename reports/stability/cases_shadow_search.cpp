@@ -2,6 +2,7 @@
 // 004, section 6.2, items 7 to 9 and 12).
 #include "reports/stability/catalogue.hpp"
 #include "reports/stability/floats.hpp"
+#include "reports/stability/quad.hpp"
 #include "reports/stability/scenes.hpp"
 #include "reports/stability/shadow_setting.hpp"
 
@@ -12,12 +13,18 @@ namespace reports::stability::shadows {
 
 void add_coverage(std::vector<Case>& cases) {
     const auto half_plane = [](double x, double) { return x < 0.0 ? 5.0 : INFINITY; };
-    cases.push_back({"shadows.covered-half", Side::below, "occluders over half of the light", "half of it, to 1 / kr",
-                     "of the light", 1.0 / 12.8, [half_plane](Finding& finding) {
+    cases.push_back({"shadows.covered-half", Side::below, "occluders over half of the light",
+                     "half of it: to 1 / kr with whole steps, to rounding with the texels' own places", "kr", 1.0,
+                     [half_plane](Finding& finding) {
                          const AreaLight light = unit_light(0.5);
-                         finding.error(visibility(map_of(light, floats_32, {half_plane, plane(10)}), all_texels,
-                                                  point(light, 0, 0, 10)) -
-                                       0.5);
+                         const ShadowMap map = map_of(light, floats_32, {half_plane, plane(10)});
+                         const auto off = [&](const ShadowKernelOptions& options) {
+                             return visibility(map, options, point(light, 0, 0, 10)) - 0.5;
+                         };
+                         ShadowKernelOptions exact = all_texels;
+                         exact.offset = traces::SampleOffset::exact;
+                         finding.error(off(all_texels) * 12.8);
+                         finding.require(std::fabs(off(exact)) < 1e-6, "half of it");
                      }});
     cases.push_back({"shadows.covered-once", Side::at, "a whole plane of occluders: their areas add up to the light's",
                      "none: kr^2 A = 1", "of the light", 1e-4, [](Finding& finding) {
@@ -88,11 +95,12 @@ void add_search(std::vector<Case>& cases) {
     const auto width = [](float z_s, float z) {
         return static_cast<double>(traces::search_width(unit_light(), 1024, z_s, z));
     };
-    cases.push_back({"shadows.search-inside", Side::below, "search region for z_min between n and z: 5 and 9.99 of 10",
-                     "1024 (1/z_min - 1/z): 102.4 and 0.1025 texels", "relative", 3e-4, [width](Finding& finding) {
-                         finding.error(width(5, 10) / 102.4 - 1.0);
-                         finding.error(width(9.99F, 10) / (1024.0 * (1 / 9.99 - 0.1)) - 1.0);
-                         finding.error(width(1, 10) / 921.6 - 1.0);
+    cases.push_back({"shadows.search-inside", Side::below,
+                     "search region for z_min between n and z: 1, 5, 9.99, and one float below 10",
+                     "1024 (1/z_min - 1/z) in 113 bits, to 6 half places of a float: 921.6, 102.4, 0.1025 texels ...",
+                     "relative", 6 * 0x1p-24, [width](Finding& finding) {
+                         for (const float z_s : {1.0F, 5.0F, 9.99F, 9.9999F, next_down(10.0F)})
+                             finding.error(relative_error(width(z_s, 10), 1024 * (1 / Quad(z_s) - 1 / Quad(10))));
                      }});
     cases.push_back({"shadows.search-at", Side::at, "search region for z_min = z", "no width", "texels", 0.0,
                      [width](Finding& finding) {

@@ -1,9 +1,9 @@
 // Depth reconstruction, path lengths (A12), circles of confusion (A14), perspective interpolation, level of detail.
 #include "reports/stability/conditioning.hpp"
 
-#include "pipeline/functional/depth_format.hpp"
 #include "pipeline/functional/eye_depth.hpp"
 #include "pipeline/functional/interpolation.hpp"
+#include "pipeline/functional/surface_texel.hpp"
 #include "pipeline/functional/texture_sampler.hpp"
 #include "reports/stability/curve_maker.hpp"
 #include "reports/stability/scenes.hpp"
@@ -44,12 +44,12 @@ Curve path_length() {
     const pipeline::View view = perspective_view(64, 64, 60, 0.1, 100.0);
     const traces::ViewRays rays(view);
     const pipeline::EyeDepth depth(view.projection);
-    const auto stored = [=](double distance, pipeline::DepthFormat format) {
+    const auto stored = [=](double distance, pipeline::SurfaceFormat format) {
         return pipeline::depth_value(format, pipeline::depth_code(format, depth.window(distance)));
     };
     const glm::dvec3 way = rays.place(40, 20, 1.0);
     const Quad slope = square_root(Quad(way.x) * way.x + Quad(way.y) * way.y + Quad(way.z) * way.z);
-    const auto length = [=](double gap, pipeline::DepthFormat format) {
+    const auto length = [=](double gap, pipeline::SurfaceFormat format) {
         return rays.length(40, 20, depth.distance(stored(10.0, format)),
                            depth.distance(stored(10.0 * (1.0 + gap), format)));
     };
@@ -64,14 +64,14 @@ Curve path_length() {
           }},
          {"through D32F",
           [=](double gap) {
-              return right_digits(length(gap, pipeline::DepthFormat::d32f), slope * Quad(10) * Quad(gap));
+              return right_digits(length(gap, pipeline::SurfaceFormat::d32f), slope * Quad(10) * Quad(gap));
           }},
          {"through D24",
           [=](double gap) {
-              return right_digits(length(gap, pipeline::DepthFormat::d24), slope * Quad(10) * Quad(gap));
+              return right_digits(length(gap, pipeline::SurfaceFormat::d24), slope * Quad(10) * Quad(gap));
           }},
          {"through D16", [=](double gap) {
-              return right_digits(length(gap, pipeline::DepthFormat::d16), slope * Quad(10) * Quad(gap));
+              return right_digits(length(gap, pipeline::SurfaceFormat::d16), slope * Quad(10) * Quad(gap));
           }}});
 }
 

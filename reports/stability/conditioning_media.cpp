@@ -80,17 +80,15 @@ Curve search_region() {
     const auto exact = [=](double x) { return 1024 * (1 / Quad(behind(x)) - Quad(1) / 10); };
     return make_curve(
         "A19, A20 search region", "r l (n / w) (1 / z_min - 1 / z), z_min = z (1 - x), z = 10",
-        "none: z_min < z is tested first, and a width that lost its digits is below a texel, where all 9 texels around "
-        "are searched",
+        "as (z - z_min) / z / z_min (shadow_kernel.cpp): z - z_min of floats is exact where they are near each other",
         "x", 0.9, 1e-7,
         {{"the program's",
           [=](double x) {
               return right_digits(
                   static_cast<double>(traces::search_width(shadows::unit_light(), 1024, behind(x), 10.0F)), exact(x));
           }},
-         {"as (z - z_min) / (z z_min)", [=](double x) {
-              const float z = behind(x);
-              return right_digits(static_cast<double>(1024.0F * ((10.0F - z) / (10.0F * z))), exact(x));
+         {"as printed, in floats", [=](double x) {
+              return right_digits(static_cast<double>(1024.0F * (1.0F / behind(x) - 1.0F / 10.0F)), exact(x));
           }}});
 }
 

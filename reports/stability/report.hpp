@@ -6,7 +6,7 @@
 #include "reports/stability/case.hpp"
 #include "reports/terminal_table.hpp"
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <utility>
 #include <vector>

@@ -114,7 +114,7 @@ TruthRun run_truth(const TruthRequest& request, const Supervision& supervision) 
     TruthRun run;
     run.frame = std::make_shared<const pipeline::Frame>(traces::build_frame(scene, view, request.workload, options));
     run.method = traces::truth_method(scene, *run.frame, request.workload, options);
-    if (!run.method.key) run.method.key = options.values.dump();
+    if (!run.method.key) run.method.key = options.values->dump();
     run.plan = request.plan;
     if (!run.plan.light) run.plan.light = run.method.light;
     if (run.method.frame) run.frame = run.method.frame;

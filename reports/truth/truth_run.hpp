@@ -8,7 +8,7 @@
 #include "traces/workloads.hpp"
 
 #include <memory>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 

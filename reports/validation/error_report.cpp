@@ -4,6 +4,7 @@
 #include "sim/described.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace reports {
 

@@ -5,7 +5,7 @@
 #include "reports/text_table.hpp"
 #include "reports/validation/validation_row.hpp"
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 #include <vector>

@@ -6,6 +6,7 @@
 #include "reports/validation/error_report.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace reports {
 

@@ -5,7 +5,7 @@
 #include "reports/terminal_table.hpp"
 #include "reports/validation/folds.hpp"
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 

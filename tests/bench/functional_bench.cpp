@@ -89,7 +89,7 @@ void reference_depth(benchmark::State& state) {
     frame.view = scene.view;
     frame.draws = scene.draws;
     pipeline::Pass pass;
-    pass.depth = {true, true};
+    pass.states[0].depth = {true, true};
     pass.colour = true;
     frame.passes = {pass};
     const std::vector<pipeline::FragmentStream> streams{

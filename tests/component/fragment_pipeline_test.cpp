@@ -1,5 +1,5 @@
 // A fragment pipe without k-buffer: latency, issue rate, quads in flight, texture reads, the peel test.
-#include "pipeline/functional/depth_format.hpp"
+#include "pipeline/functional/surface_texel.hpp"
 #include "tests/support/pipe_kit.hpp"
 
 #include <memory>
@@ -9,7 +9,7 @@
 namespace fragment_pipeline_test {
 
 using Cycles = std::vector<sim::Cycle>;
-using pipeline::DepthFormat;
+using pipeline::SurfaceFormat;
 using tests::PipeBench;
 using tests::PipeOptions;
 
@@ -197,7 +197,7 @@ TEST(FragmentPipeline, BlockedMemoryLosesNothing) {
 // ---- peel test
 
 /// A layer with one depth everywhere, written by one quad.
-pipeline::PeeledLayer layer_at(float depth, DepthFormat format, pipeline::QuadId quad) {
+pipeline::PeeledLayer layer_at(float depth, SurfaceFormat format, pipeline::QuadId quad) {
     return {std::vector(std::size_t{64} * 64, pipeline::depth_code(format, depth)),
             std::vector<std::uint32_t>(std::size_t{64} * 64, quad)};
 }
@@ -211,8 +211,8 @@ std::vector<std::uint32_t> masks(const PipeBench& bench) {
 TEST(FragmentPipeline, ExactPeelTakesWhatIsBehindTheLayerAndTiesByOrder) {
     tests::QuadPass pass;
     pass.context.peel.rule = pipeline::PeelRule::exact;
-    pass.context.depth_format = DepthFormat::d32f;
-    const pipeline::PeeledLayer layer = layer_at(0.5F, DepthFormat::d32f, 1);
+    pass.context.depth_format = SurfaceFormat::d32f;
+    const pipeline::PeeledLayer layer = layer_at(0.5F, SurfaceFormat::d32f, 1);
     pass.context.behind = &layer;
     pass.quad(0, 0, 15, 0.25F);
     pass.quad(0, 0, 15, 0.5F); // the one that was captured
@@ -229,9 +229,9 @@ TEST(FragmentPipeline, ExactPeelTakesWhatIsBehindTheLayerAndTiesByOrder) {
 
 TEST(FragmentPipeline, EpsPeelTakesWhatIsFartherByEps) {
     tests::QuadPass pass;
-    pass.context.peel = {pipeline::PeelRule::eps, 0.125, DepthFormat::d32f};
-    pass.context.depth_format = DepthFormat::d32f;
-    const pipeline::PeeledLayer layer = layer_at(0.5F, DepthFormat::d32f, 0);
+    pass.context.peel = {pipeline::PeelRule::eps, 0.125, SurfaceFormat::d32f};
+    pass.context.depth_format = SurfaceFormat::d32f;
+    const pipeline::PeeledLayer layer = layer_at(0.5F, SurfaceFormat::d32f, 0);
     pass.context.behind = &layer;
     for (const float depth : {0.5F, std::nextafter(0.625F, 0.0F), 0.625F}) pass.quad(0, 0, 15, depth);
     PipeBench bench(pass);
@@ -241,7 +241,7 @@ TEST(FragmentPipeline, EpsPeelTakesWhatIsFartherByEps) {
 
 TEST(FragmentPipeline, PeeledLayerIsReadThroughTheTextureCache) {
     tests::QuadPass pass;
-    const pipeline::PeeledLayer layer = layer_at(0.0F, DepthFormat::d24, 0);
+    const pipeline::PeeledLayer layer = layer_at(0.0F, SurfaceFormat::d24, 0);
     pass.context.behind = &layer;
     pass.quads(8); // four tiles of 4x4 pixels, two quads of each in a row
     PipeBench bench(pass);
@@ -253,7 +253,7 @@ TEST(FragmentPipeline, PeeledLayerIsReadThroughTheTextureCache) {
 // Otherwise the lines of the layer before would be found in the cache.
 TEST(FragmentPipeline, LayerOfEachPassLiesElsewhere) {
     tests::QuadPass pass;
-    const pipeline::PeeledLayer layer = layer_at(0.0F, DepthFormat::d24, 0);
+    const pipeline::PeeledLayer layer = layer_at(0.0F, SurfaceFormat::d24, 0);
     pass.context.behind = &layer;
     pass.quad(0, 0);
     PipeBench one(pass), two(pass);

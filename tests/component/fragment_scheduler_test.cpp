@@ -6,6 +6,7 @@
 #include "tests/support/scheduler_kit.hpp"
 #include "tests/support/sim_kit.hpp"
 
+#include <nlohmann/json.hpp>
 #include <random>
 
 namespace fragment_scheduler_test {

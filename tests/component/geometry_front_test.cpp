@@ -84,6 +84,28 @@ GeometryScene mixed_scene() {
     return scene;
 }
 
+TEST(GeometryFront, PointsAndLinesCountTheirOwnCorners) {
+    struct Kind {
+        Topology topology;
+        std::uint32_t primitives, corners;
+    };
+    for (const IndexType type : {IndexType::u16, IndexType::none})
+        for (const Kind& kind : {Kind{Topology::points, 100, 1},
+                                 {Topology::lines, 50, 2},
+                                 {Topology::line_strip, 99, 2},
+                                 {Topology::line_loop, 100, 2}}) {
+            const GeometryScene scene = tests::make_scene(
+                {{.topology = kind.topology, .index_type = type, .vertex_count = 100, .indices = first_numbers(100)}});
+            Front run(scene, {});
+            run.pass();
+            const GeometryStats stats = run.front.stats();
+            EXPECT_EQ(stats.vertex_reuse.misses.value, kind.topology == Topology::line_loop ? 101U : 100U);
+            EXPECT_EQ(stats.vertex_reuse.hits.value + stats.vertex_reuse.misses.value, kind.primitives * kind.corners);
+            EXPECT_EQ(stats.primitive_assembly.primitives.value, kind.primitives);
+            EXPECT_EQ(stats.triangle_setup.triangles.value, kind.primitives);
+        }
+}
+
 TEST(GeometryFront, TimedCountsEqualTheModelsWithoutTime) {
     const std::vector<tests::IndexedMesh> meshes{tests::grid_mesh(40, 40), tests::shuffled(tests::grid_mesh(40, 40), 1),
                                                  tests::sphere_mesh(30, 50), tests::random_mesh(2000, 700, 2),

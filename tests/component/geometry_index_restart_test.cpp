@@ -37,6 +37,27 @@ TEST(IndexFetch, RestartedFansKeepTheirOwnCentre) {
     EXPECT_EQ(run.stats.indices.value, 9U);
 }
 
+TEST(IndexFetch, PointsAndLinesReadEachIndexOnce) {
+    using Vertices = std::vector<std::array<std::uint32_t, 3>>;
+    const auto vertices = [](Topology topology) {
+        const FetchRun run =
+            fetch(tests::make_scene({restarted(topology, IndexType::u16, {9, 8, 7, ~0U, 5, 4, ~0U, 3, ~0U})}), {});
+        EXPECT_EQ(run.stats.indices.value, 9U);
+        Vertices list;
+        std::uint32_t bytes = 0;
+        for (const IndexedPrimitive& primitive : run.primitives) {
+            list.push_back(primitive.vertices);
+            bytes += primitive.index_bytes;
+        }
+        EXPECT_LE(bytes, 18U);
+        return list;
+    };
+    EXPECT_EQ(vertices(Topology::points), (Vertices{{9, 9, 9}, {8, 8, 8}, {7, 7, 7}, {5, 5, 5}, {4, 4, 4}, {3, 3, 3}}));
+    EXPECT_EQ(vertices(Topology::lines), (Vertices{{9, 8, 8}, {5, 4, 4}}));
+    EXPECT_EQ(vertices(Topology::line_strip), (Vertices{{9, 8, 8}, {8, 7, 7}, {5, 4, 4}}));
+    EXPECT_EQ(vertices(Topology::line_loop), (Vertices{{9, 8, 8}, {8, 7, 7}, {7, 9, 9}, {5, 4, 4}, {4, 5, 5}}));
+}
+
 TEST(IndexFetch, IndicesThatMakeNoTriangleCostTheirBytesAndTime) {
     // Restarts alone: 4000 bytes and no triangle, twice; then a triangle behind as many, of which one line fits.
     const std::vector<std::uint32_t> nothing(1000, ~0U);

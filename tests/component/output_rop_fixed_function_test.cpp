@@ -13,16 +13,25 @@ using tests::RopOptions;
 
 constexpr sim::Cycle hit = 2, miss = 103;
 
+const pipeline::BlendState sum = pipeline::blends::of(pipeline::blends::sum);
+
 struct DepthPass : tests::QuadPass {
-    DepthPass() { context.depth = {true, true}; }
+    explicit DepthPass(const pipeline::BlendState& blend = {}) {
+        pipeline::RasterState state;
+        state.depth = {true, true};
+        state.blend[0] = blend;
+        context.states = pipeline::DrawStates(state);
+    }
 };
 struct ColourPass : tests::QuadPass {
     pipeline::Frame frame;
-    explicit ColourPass(pipeline::BlendMode blend = pipeline::BlendMode::replace) {
-        frame.colour_format = pipeline::ColourFormat::rgba32f;
+    explicit ColourPass(const pipeline::BlendState& blend = {}) {
+        pipeline::RasterState state;
+        state.blend[0] = blend;
+        context.states = pipeline::DrawStates(state);
+        context.colour_format = pipeline::SurfaceFormat::rgba32f;
         context.frame = &frame;
         context.colour_write = true;
-        context.blend = blend;
     }
 };
 
@@ -77,8 +86,8 @@ TEST(RopFixedFunction, OnlyWhatPassesMakesItsLineDirty) {
 }
 
 TEST(RopFixedFunction, OpaqueColourIsNotFetchedAndBlendedColourIs) {
-    for (const pipeline::BlendMode blend : {pipeline::BlendMode::replace, pipeline::BlendMode::add}) {
-        const bool opaque = blend == pipeline::BlendMode::replace;
+    for (const pipeline::BlendState& blend : {pipeline::BlendState{}, sum}) {
+        const bool opaque = !blend.enabled;
         ColourPass pass(blend);
         pass.frame.opacity = 1.0F;
         pass.quad(0, 0, 1);
@@ -96,24 +105,23 @@ TEST(RopFixedFunction, OpaqueColourIsNotFetchedAndBlendedColourIs) {
 
 // Four ROPs, four fragments: 16 bytes of depth read, 16 written, 16 of colour written, 16 read where they are blended.
 TEST(RopFixedFunction, PortOfTheCacheSetsTheRate) {
-    const auto cycles_per_quad = [](bool colour, pipeline::BlendMode blend, float depth, std::uint32_t port) {
-        DepthPass pass;
+    const auto cycles_per_quad = [](bool colour, const pipeline::BlendState& blend, float depth, std::uint32_t port) {
+        DepthPass pass(blend);
         pipeline::Frame frame;
         pass.context.frame = &frame;
         pass.context.colour_write = colour;
-        pass.context.blend = blend;
         for (const std::uint32_t block : {0U, 1U, 2U, 3U}) pass.quad(block % 2 * 2, block / 2 * 2, 15, depth);
         RopBench bench(pass, {.rop = {.bytes_per_clk = port}});
         bench.run();
         return (bench.executed().second - bench.executed().first) / 3;
     };
-    using pipeline::BlendMode;
-    EXPECT_EQ(cycles_per_quad(false, BlendMode::replace, 0.5F, 4), 2U);
-    EXPECT_EQ(cycles_per_quad(true, BlendMode::replace, 0.5F, 4), 3U);
-    EXPECT_EQ(cycles_per_quad(true, BlendMode::add, 0.5F, 4), 4U);
-    EXPECT_EQ(cycles_per_quad(true, BlendMode::add, 1.0F, 4), 1U); // fails against the cleared surface: read only
-    EXPECT_EQ(cycles_per_quad(true, BlendMode::add, 0.5F, 8), 2U);
-    EXPECT_EQ(cycles_per_quad(true, BlendMode::add, 0.5F, 16), 1U);
+    const pipeline::BlendState replace;
+    EXPECT_EQ(cycles_per_quad(false, replace, 0.5F, 4), 2U);
+    EXPECT_EQ(cycles_per_quad(true, replace, 0.5F, 4), 3U);
+    EXPECT_EQ(cycles_per_quad(true, sum, 0.5F, 4), 4U);
+    EXPECT_EQ(cycles_per_quad(true, sum, 1.0F, 4), 1U); // fails against the cleared surface: read only
+    EXPECT_EQ(cycles_per_quad(true, sum, 0.5F, 8), 2U);
+    EXPECT_EQ(cycles_per_quad(true, sum, 0.5F, 16), 1U);
 }
 
 TEST(RopFixedFunction, LeastRecentlyUsedLineIsReplacedAndWrittenBackAtOnce) {

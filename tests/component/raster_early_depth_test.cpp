@@ -1,5 +1,5 @@
 // The early depth test between a source and a sink of quads.
-#include "pipeline/functional/depth_format.hpp"
+#include "pipeline/functional/surface_texel.hpp"
 #include "pipeline/raster/early_depth_test.hpp"
 #include "tests/support/quad_kit.hpp"
 #include "tests/support/sim_kit.hpp"
@@ -25,11 +25,24 @@ struct Bench {
     }
 };
 
-/// A depth surface with one value everywhere.
-std::vector<pipeline::DepthCode> surface(const tests::QuadPass& pass, float depth) {
-    return std::vector(std::size_t{pass.stream.width} * pass.stream.height,
-                       pipeline::depth_code(pass.context.read_only_format, depth));
-}
+/// Tested against a depth surface of 0.5 everywhere.
+struct TestedPass : tests::QuadPass {
+    std::vector<pipeline::DepthCode> depth;
+
+    explicit TestedPass(pipeline::Compare compare = pipeline::Compare::less) : depth(surface_of(*this)) {
+        pipeline::RasterState state;
+        state.depth.test = true;
+        state.depth.compare = compare;
+        context.read_only_states = pipeline::DrawStates(state);
+        context.read_only_depth = &depth;
+    }
+
+  private:
+    static std::vector<pipeline::DepthCode> surface_of(const tests::QuadPass& pass) {
+        return std::vector(std::size_t{pass.stream.width} * pass.stream.height,
+                           pipeline::depth_code(pass.context.read_only_format, 0.5F));
+    }
+};
 
 TEST(EarlyDepthTest, PassesEverythingWithoutADepthSurface) {
     tests::QuadPass pass;
@@ -48,9 +61,7 @@ TEST(EarlyDepthTest, LatencyAndRateAreExact) {
 }
 
 TEST(EarlyDepthTest, RejectsWhatIsNotNearerThanTheSurface) {
-    tests::QuadPass pass;
-    const std::vector<pipeline::DepthCode> depth = surface(pass, 0.5F);
-    pass.context.read_only_depth = &depth;
+    TestedPass pass;
     pass.quad(0, 0, 15, 0.25F);
     pass.quad(2, 0, 15, 0.5F); // equal depth is not less
     pass.quad(4, 0, 15, 0.75F);
@@ -66,11 +77,19 @@ TEST(EarlyDepthTest, RejectsWhatIsNotNearerThanTheSurface) {
     EXPECT_EQ(bench.unit.stats().fragments_rejected, 10U);
 }
 
+TEST(EarlyDepthTest, ComparesAsTheDrawSays) {
+    for (const pipeline::Compare compare : {pipeline::Compare::greater_equal, pipeline::Compare::not_equal}) {
+        TestedPass pass(compare);
+        pass.quad(0, 0, 15);
+        pass.stream.depths[0] = {0.25F, 0.75F, 0.5F, 0.4F};
+        const Bench bench(pass, {});
+        EXPECT_EQ(bench.sink.values().at(0).mask, compare == pipeline::Compare::not_equal ? 0b1011U : 0b0110U);
+    }
+}
+
 TEST(EarlyDepthTest, LooksAtEachPixelsOwnDepth) {
-    tests::QuadPass pass;
-    std::vector<pipeline::DepthCode> depth = surface(pass, 0.5F);
-    depth[std::size_t{3} * pass.stream.width + 5] = pipeline::depth_code(pass.context.read_only_format, 0.1F);
-    pass.context.read_only_depth = &depth;
+    TestedPass pass;
+    pass.depth[std::size_t{3} * pass.stream.width + 5] = pipeline::depth_code(pass.context.read_only_format, 0.1F);
     pass.quad(4, 2, 15, 0.25F);
     const Bench bench(pass, {});
     EXPECT_EQ(bench.sink.values().at(0).mask, 0b0111); // pixel 3 of the quad is (5, 3)
@@ -85,9 +104,7 @@ TEST(EarlyDepthTest, StalledSinkBlocksItAndNothingIsLost) {
 }
 
 TEST(EarlyDepthTest, RejectedQuadsTakeTheirTurnToo) {
-    tests::QuadPass pass;
-    const std::vector<pipeline::DepthCode> depth = surface(pass, 0.5F);
-    pass.context.read_only_depth = &depth;
+    TestedPass pass;
     for (std::uint32_t i = 0; i < 12; ++i) pass.quad(i * 2, 0, 15, i == 11 ? 0.1F : 0.9F);
     const Bench bench(pass, {.quads_per_clk = 4, .latency = 1});
     EXPECT_EQ(bench.sink.cycles(), (Cycles{4})); // the third group of four leaves at cycle 3

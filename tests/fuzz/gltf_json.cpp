@@ -3,6 +3,7 @@
 #include "traces/gltf/json_check.hpp"
 
 #include <cstdint>
+#include <nlohmann/json.hpp>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
     const std::string_view text(reinterpret_cast<const char*>(bytes), size);

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 #include <numeric>
 #include <set>
 
@@ -271,7 +272,7 @@ TEST(Laws, PassesAndDrawsAddUpToTheRun) {
         for (const pipeline::PassResult& pass : run.passes) {
             EXPECT_EQ(pass.first_cycle, cycles); // back to back
             cycles += pass.cycles;
-            for (const Json& of_client : pass.counters.at("memory").at("bytes"))
+            for (const Json& of_client : pass.counters->at("memory").at("bytes"))
                 bytes += of_client.get<std::uint64_t>();
         }
         EXPECT_EQ(cycles, run.cycles);
@@ -294,15 +295,15 @@ TEST(Laws, PassesAndDrawsAddUpToTheRun) {
 TEST(Laws, HitsAndMissesAreAllAccesses) {
     for_every_run({}, [](const Case& one, const std::string& design, const Settings& settings) {
         const RunResult run = one.replay.run(design, settings);
-        EXPECT_FALSE(run.caches.empty());
-        for (const auto& cache : run.caches.items()) {
+        EXPECT_FALSE(run.caches->empty());
+        for (const auto& cache : run.caches->items()) {
             SCOPED_TRACE(cache.key());
             EXPECT_EQ(counter(cache.value(), "hits") + counter(cache.value(), "misses"),
                       counter(cache.value(), "accesses"));
             EXPECT_GT(counter(cache.value(), "accesses"), 0U);
         }
         // Accesses are those of whoever asks.
-        if (run.caches.contains("texture_l1_kbuffer")) {
+        if (run.caches->contains("texture_l1_kbuffer")) {
             const std::uint64_t lines =
                 support::counter(run.stages, "fragment_pipeline/counters/kbuffer_reads") *
                 (design == "framebuffer-fetch" || // reads all render targets at once
@@ -311,10 +312,10 @@ TEST(Laws, HitsAndMissesAreAllAccesses) {
                      : one.replay.frame.program->targets());
             EXPECT_EQ(counter(run.caches, "texture_l1_kbuffer/accesses"), lines);
         }
-        if (run.caches.contains("kbuffer_tiles")) {
+        if (run.caches->contains("kbuffer_tiles")) {
             // The pass that sorts lists writes its entries through the colour cache.
             const std::uint64_t sorted =
-                run.caches.contains("colour_tiles") ? counter(run.caches, "colour_tiles/accesses") : 0;
+                run.caches->contains("colour_tiles") ? counter(run.caches, "colour_tiles/accesses") : 0;
             EXPECT_EQ(counter(run.caches, "kbuffer_tiles/accesses") + sorted,
                       counter(run.stages, "rop/counters/quads"));
         }
@@ -324,7 +325,7 @@ TEST(Laws, HitsAndMissesAreAllAccesses) {
 TEST(Laws, ActivitiesOfEveryUnitSumToTheElapsedTime) {
     for_every_run(jitter, [](const Case& one, const std::string& design, const Settings& settings) {
         const RunResult run = one.replay.run(design, settings);
-        for (const auto& stage : run.stages.items()) {
+        for (const auto& stage : run.stages->items()) {
             SCOPED_TRACE(stage.key());
             std::uint64_t sum = 0;
             for (const auto& activity : stage.value().at("activity").items())
@@ -334,7 +335,7 @@ TEST(Laws, ActivitiesOfEveryUnitSumToTheElapsedTime) {
                                                                           : 1;
             EXPECT_EQ(sum, units * run.cycles);
         }
-        for (const auto& stage : run.stalls.items()) {
+        for (const auto& stage : run.stalls->items()) {
             double sum = 0;
             for (const auto& activity : stage.value().items()) sum += activity.value().get<double>();
             EXPECT_NEAR(sum, 1.0, 1e-9) << stage.key();

@@ -2,6 +2,7 @@
 #include "tests/support/replay.hpp"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 using pipeline::RunResult;
 using support::Replay;

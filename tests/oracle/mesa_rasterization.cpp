@@ -2,7 +2,7 @@
 //
 // Both get the same vertices and the same matrix. Triangles that lie within the screen must agree in every pixel.
 #include "pipeline/functional/clip.hpp"
-#include "pipeline/functional/colour_format.hpp"
+#include "pipeline/functional/fragment_operations.hpp"
 #include "pipeline/functional/front_end.hpp"
 #include "pipeline/functional/vertex_transform.hpp"
 #include "sim/random.hpp"
@@ -21,46 +21,6 @@ namespace {
 
 using pipeline::FragmentStream;
 using pipeline::Quad;
-
-/// Per pixel, what OpenGL is asked for too.
-struct OwnPicture {
-    std::vector<std::uint32_t> count, id;
-    std::vector<float> depth;
-    std::vector<glm::vec4> colour;
-};
-
-std::uint32_t primitive_of(const FragmentStream& stream, const Quad& quad) {
-    return stream.triangles[quad.triangle].primitive;
-}
-
-void for_each_fragment(const FragmentStream& stream,
-                       const std::function<void(std::size_t pixel, std::size_t quad, std::size_t lane)>& visit) {
-    for (std::size_t i = 0; i < stream.quads.size(); ++i) {
-        const Quad& quad = stream.quads[i];
-        for (std::size_t lane = 0; lane < 4; ++lane)
-            if (((quad.covered >> lane) & 1U) != 0)
-                visit((quad.y + lane / 2) * std::size_t{stream.width} + quad.x + lane % 2, i, lane);
-    }
-}
-
-FragmentStream rasterize_scene(const TriangleScene& scene, bool double_sided = true) {
-    const PipelineScene own = pipeline_scene(scene, double_sided);
-    own.resources.validate(scene.name);
-    pipeline::FrontEndOptions options;
-    options.colours = false;
-    return pipeline::rasterize(own.resources, own.draws, std::vector<std::uint32_t>{0}, own.view, options);
-}
-
-OwnPicture count_fragments(const FragmentStream& stream) {
-    OwnPicture picture;
-    picture.count.resize(std::size_t{stream.width} * stream.height);
-    picture.id.resize(picture.count.size());
-    for_each_fragment(stream, [&](std::size_t pixel, std::size_t quad, std::size_t) {
-        ++picture.count[pixel];
-        picture.id[pixel] = primitive_of(stream, stream.quads[quad]) + 1;
-    });
-    return picture;
-}
 
 OwnPicture nearest_fragments(const FragmentStream& stream) {
     OwnPicture picture;
@@ -95,15 +55,6 @@ std::vector<glm::vec4> random_colours(std::size_t count) {
     for (glm::vec4& colour : colours)
         for (int channel = 0; channel < 4; ++channel) colour[channel] = static_cast<float>(random.uniform());
     return colours;
-}
-
-/// llvmpipe's viewport transform is a fused multiply-add only where the processor has one.
-bool fuses_multiply_add() {
-#if defined(__x86_64__)
-    return __builtin_cpu_supports("fma") != 0;
-#else
-    return true;
-#endif
 }
 
 /// Corners of a triangle on the screen: pixels and depth.
@@ -256,7 +207,7 @@ TEST_F(MesaRasterization, OrderedBlendingInFloatIsBitExact) {
     const FragmentStream stream = rasterize_scene(scene);
     std::vector<glm::vec4> own(std::size_t{scene.width} * scene.height, glm::vec4(0.0F));
     for_each_fragment(stream, [&](std::size_t pixel, std::size_t quad, std::size_t) {
-        own[pixel] = blend(pipeline::BlendMode::over, colours[primitive_of(stream, stream.quads[quad])], own[pixel]);
+        own[pixel] = blended(pipeline::blends::over(), colours[primitive_of(stream, stream.quads[quad])], own[pixel]);
     });
     const MesaPicture mesa = renderer_->render(scene, MesaMode::blend, colours);
     std::size_t wrong = 0;
@@ -290,7 +241,7 @@ std::vector<bool> near_clipped_edges(const TriangleScene& scene) {
                                                      glm::vec4(scene.positions[scene.indices[i + k]], 1.0F));
         if (((vertices[0].outside | vertices[1].outside | vertices[2].outside) & pipeline::outside::view_volume) == 0)
             continue;
-        const auto polygon = clip_triangle(viewport, {&vertices[0], &vertices[1], &vertices[2]});
+        const auto polygon = clip_triangle(viewport, {.vertices = {&vertices[0], &vertices[1], &vertices[2]}});
         for (std::uint32_t k = 0; k < polygon.count; ++k) {
             const auto from = screen_vertex(viewport, polygon.corners[k]);
             const auto to = screen_vertex(viewport, polygon.corners[(k + 1) % polygon.count]);

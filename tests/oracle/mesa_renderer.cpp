@@ -18,22 +18,30 @@ namespace {
 constexpr const char* vertex_source = R"(#version 450 core
 layout(location = 0) in vec3 position;
 uniform mat4 clip_matrix;
+uniform vec4 planes[8];
+flat out uint vertex;
+out float gl_ClipDistance[8];
 
 // The sum is written out, and precise, so that no compiler forms other sums or fused operations.
 void main() {
     precise vec4 clip = ((clip_matrix[0] * position.x + clip_matrix[1] * position.y) + clip_matrix[2] * position.z)
                         + clip_matrix[3];
     gl_Position = clip;
+    for (int i = 0; i < 8; ++i) gl_ClipDistance[i] = dot(planes[i], vec4(position, 1.0));
+    vertex = uint(gl_VertexID);
 }
 )";
 
 constexpr const char* fragment_source = R"(#version 450 core
 layout(location = 0) out vec4 colour;
 layout(location = 1) out uint id;
+flat in uint vertex;
 uniform samplerBuffer colours;
-uniform bool counting;
+uniform int first_triangle;
+uniform int mode; // as MesaMode
 void main() {
-    colour = counting ? vec4(1.0) : texelFetch(colours, gl_PrimitiveID);
+    colour = mode == 2 ? texelFetch(colours, gl_PrimitiveID + first_triangle)
+                       : vec4(mode == 3 ? float(vertex) : 1.0);
     id = uint(gl_PrimitiveID) + 1u;
 }
 )";
@@ -81,27 +89,33 @@ EGLContext open_context(EGLDisplay display) {
     return eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context) == EGL_TRUE ? context : EGL_NO_CONTEXT;
 }
 
-/// RGBA32F, R32UI and D32F targets of one size.
+/// Colour, R32UI and depth targets of one size; with D24S8 the stencil is attached, too.
 class Targets {
   public:
-    Targets(GLsizei width, GLsizei height) {
+    Targets(GLsizei width, GLsizei height, GLenum colour = GL_RGBA32F, GLenum depth = GL_DEPTH_COMPONENT32F,
+            const glm::vec4& background = glm::vec4(0.0F)) {
         glGenFramebuffers(1, &framebuffer_);
         glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
         glGenRenderbuffers(3, buffers_.data());
-        attach(0, GL_RGBA32F, GL_COLOR_ATTACHMENT0, width, height);
+        attach(0, colour, GL_COLOR_ATTACHMENT0, width, height);
         attach(1, GL_R32UI, GL_COLOR_ATTACHMENT1, width, height);
-        attach(2, GL_DEPTH_COMPONENT32F, GL_DEPTH_ATTACHMENT, width, height);
+        attach(2, depth, depth == GL_DEPTH24_STENCIL8 ? GL_DEPTH_STENCIL_ATTACHMENT : GL_DEPTH_ATTACHMENT, width,
+               height);
         constexpr std::array<GLenum, 2> draw_buffers{GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
         glDrawBuffers(2, draw_buffers.data());
         if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
             throw std::runtime_error("the framebuffer of the OpenGL reference is not complete");
         glViewport(0, 0, width, height);
-        constexpr std::array<float, 4> black{};
         constexpr std::array<GLuint, 4> none{};
         constexpr float far = 1.0F;
-        glClearBufferfv(GL_COLOR, 0, black.data());
+        constexpr GLint no_stencil = 0;
+        glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+        glDepthMask(GL_TRUE);
+        glStencilMask(0xFF);
+        glClearBufferfv(GL_COLOR, 0, &background[0]);
         glClearBufferuiv(GL_COLOR, 1, none.data());
         glClearBufferfv(GL_DEPTH, 0, &far);
+        glClearBufferiv(GL_STENCIL, 0, &no_stencil);
     }
     ~Targets() {
         glDeleteFramebuffers(1, &framebuffer_);
@@ -120,6 +134,61 @@ class Targets {
     GLuint framebuffer_ = 0;
     std::array<GLuint, 3> buffers_{};
 };
+
+void set(GLenum what, bool on) { on ? glEnable(what) : glDisable(what); }
+
+template <class Value, std::size_t n>
+GLenum of(const std::array<GLenum, n>& names, Value value) {
+    return names.at(static_cast<std::size_t>(value));
+}
+
+constexpr std::array<GLenum, 8> compares{GL_NEVER,   GL_LESS,     GL_EQUAL,  GL_LEQUAL,
+                                         GL_GREATER, GL_NOTEQUAL, GL_GEQUAL, GL_ALWAYS};
+constexpr std::array<GLenum, 15> factors{GL_ZERO,
+                                         GL_ONE,
+                                         GL_SRC_COLOR,
+                                         GL_ONE_MINUS_SRC_COLOR,
+                                         GL_DST_COLOR,
+                                         GL_ONE_MINUS_DST_COLOR,
+                                         GL_SRC_ALPHA,
+                                         GL_ONE_MINUS_SRC_ALPHA,
+                                         GL_DST_ALPHA,
+                                         GL_ONE_MINUS_DST_ALPHA,
+                                         GL_CONSTANT_COLOR,
+                                         GL_ONE_MINUS_CONSTANT_COLOR,
+                                         GL_CONSTANT_ALPHA,
+                                         GL_ONE_MINUS_CONSTANT_ALPHA,
+                                         GL_SRC_ALPHA_SATURATE};
+constexpr std::array<GLenum, 5> equations{GL_FUNC_ADD, GL_FUNC_SUBTRACT, GL_FUNC_REVERSE_SUBTRACT, GL_MIN, GL_MAX};
+constexpr std::array<GLenum, 8> stencil_operations{GL_KEEP, GL_ZERO,      GL_REPLACE,   GL_INCR,
+                                                   GL_DECR, GL_INCR_WRAP, GL_DECR_WRAP, GL_INVERT};
+
+void set_face(GLenum face, const pipeline::StencilFace& state) {
+    glStencilFuncSeparate(face, of(compares, state.compare), state.reference, state.compare_mask);
+    glStencilOpSeparate(face, of(stencil_operations, state.stencil_fails), of(stencil_operations, state.depth_fails),
+                        of(stencil_operations, state.passes));
+    glStencilMaskSeparate(face, state.write_mask);
+}
+
+void set_raster_state(const pipeline::RasterState& state) {
+    const pipeline::BlendState& blend = state.blend[0];
+    glDisable(GL_CULL_FACE);
+    glDisable(GL_BLEND); // of the second target, which holds integers
+    if (blend.enabled) glEnablei(GL_BLEND, 0);
+    glBlendFuncSeparatei(0, of(factors, blend.colour.source), of(factors, blend.colour.target),
+                         of(factors, blend.alpha.source), of(factors, blend.alpha.target));
+    glBlendEquationSeparatei(0, of(equations, blend.colour.equation), of(equations, blend.alpha.equation));
+    glBlendColor(blend.constant.r, blend.constant.g, blend.constant.b, blend.constant.a);
+    const auto channel = [&](unsigned i) { return static_cast<GLboolean>(state.write_mask[0] >> i & 1U); };
+    glColorMaski(0, channel(0), channel(1), channel(2), channel(3));
+    set(GL_DEPTH_TEST, state.depth.used()); // OpenGL writes depth only while it tests
+    glDepthFunc(state.depth.test ? of(compares, state.depth.compare) : GL_ALWAYS);
+    glDepthMask(state.depth.write ? GL_TRUE : GL_FALSE);
+    set(GL_STENCIL_TEST, state.stencil.test);
+    set_face(GL_FRONT, state.stencil.front);
+    set_face(GL_BACK, state.stencil.back);
+    glFrontFace(state.front_is_clockwise ? GL_CCW : GL_CW); // OpenGL sees the picture upside down, see load()
+}
 
 template <class Element>
 void upload(GLenum target, GLuint buffer, const std::vector<Element>& elements) {
@@ -145,13 +214,42 @@ class LlvmpipeRenderer : public MesaRenderer {
                        bool cull_back) override {
         const Targets targets(static_cast<GLsizei>(scene.width), static_cast<GLsizei>(scene.height));
         set_state(mode, cull_back);
+        set_front_end_state(scene);
         load(scene, mode, colours);
         for (std::size_t i = 0; i < queries_.size(); ++i) glBeginQuery(query_targets[i], queries_[i]);
-        glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(scene.indices.size()), GL_UNSIGNED_INT, nullptr);
+        glDrawElements(mode_of(scene.topology), static_cast<GLsizei>(scene.indices.size()), GL_UNSIGNED_INT, nullptr);
         for (const GLenum target : query_targets) glEndQuery(target);
         MesaPicture picture = read(scene);
         if (glGetError() != GL_NO_ERROR) throw std::runtime_error("the OpenGL reference reports an error");
         return picture;
+    }
+
+    MesaCodes render_states(const TriangleScene& scene, const std::vector<MesaDraw>& draws,
+                            const std::vector<glm::vec4>& colours, const glm::vec4& background) override {
+        const auto width = static_cast<GLsizei>(scene.width), height = static_cast<GLsizei>(scene.height);
+        const Targets targets(width, height, GL_RGBA8, GL_DEPTH24_STENCIL8, background);
+        set_front_end_state(scene);
+        load(scene, MesaMode::blend, colours);
+        for (const MesaDraw& draw : draws) {
+            set_raster_state(draw.state);
+            glUniform1i(glGetUniformLocation(program_, "first_triangle"), static_cast<GLint>(draw.first_triangle));
+            glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(draw.triangles * 3), GL_UNSIGNED_INT,
+                           reinterpret_cast<const void*>(std::size_t{draw.first_triangle} * 3 * sizeof(GLuint)));
+        }
+        set_raster_state({});
+        glUniform1i(glGetUniformLocation(program_, "first_triangle"), 0);
+        const std::size_t pixels = std::size_t{scene.width} * scene.height;
+        MesaCodes codes{std::vector<glm::u8vec4>(pixels), std::vector<std::uint32_t>(pixels),
+                        std::vector<std::uint8_t>(pixels)};
+        glReadBuffer(GL_COLOR_ATTACHMENT0);
+        glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, codes.colour.data());
+        glReadPixels(0, 0, width, height, GL_DEPTH_STENCIL, GL_UNSIGNED_INT_24_8, codes.depth.data());
+        for (std::size_t i = 0; i < pixels; ++i) {
+            codes.stencil[i] = static_cast<std::uint8_t>(codes.depth[i] & 0xFFU);
+            codes.depth[i] >>= 8U;
+        }
+        if (glGetError() != GL_NO_ERROR) throw std::runtime_error("the OpenGL reference reports an error");
+        return codes;
     }
 
   private:
@@ -159,11 +257,10 @@ class LlvmpipeRenderer : public MesaRenderer {
                                                          GL_CLIPPING_INPUT_PRIMITIVES, GL_CLIPPING_OUTPUT_PRIMITIVES};
 
     static void set_state(MesaMode mode, bool cull_back) {
-        const auto set = [](GLenum what, bool on) { on ? glEnable(what) : glDisable(what); };
         set(GL_DEPTH_TEST, mode == MesaMode::nearest);
         glDepthFunc(GL_LESS);
         glDisable(GL_BLEND);
-        if (mode != MesaMode::nearest) glEnablei(GL_BLEND, 0);
+        if (mode == MesaMode::count || mode == MesaMode::blend) glEnablei(GL_BLEND, 0);
         if (mode == MesaMode::count) {
             glBlendFunci(0, GL_ONE, GL_ONE);
         } else {
@@ -174,13 +271,45 @@ class LlvmpipeRenderer : public MesaRenderer {
         glFrontFace(GL_CW); // OpenGL sees the picture upside down, see load()
     }
 
+    static GLenum mode_of(pipeline::Topology topology) {
+        constexpr std::array<GLenum, 7> modes{GL_TRIANGLES, GL_TRIANGLE_STRIP, GL_TRIANGLE_FAN, GL_POINTS,
+                                              GL_LINES,     GL_LINE_STRIP,     GL_LINE_LOOP};
+        return modes[static_cast<std::size_t>(topology)];
+    }
+
+    static void set_front_end_state(const TriangleScene& scene) {
+        const pipeline::RasterState& state = scene.state;
+        const auto rectangle = [](const auto& apply, const pipeline::PixelRectangle& r) {
+            apply(r.x, r.y, static_cast<GLsizei>(r.width), static_cast<GLsizei>(r.height));
+        };
+        rectangle(glViewport, state.viewport.value_or(pipeline::PixelRectangle{0, 0, scene.width, scene.height}));
+        set(GL_SCISSOR_TEST, state.scissor.has_value());
+        if (state.scissor) rectangle(glScissor, *state.scissor);
+        if (state.culling != pipeline::FaceCulling::by_material) {
+            constexpr std::array<GLenum, 5> faces{GL_BACK, GL_BACK, GL_FRONT, GL_BACK, GL_FRONT_AND_BACK};
+            set(GL_CULL_FACE, state.culling != pipeline::FaceCulling::none);
+            glCullFace(faces[static_cast<std::size_t>(state.culling)]);
+            glFrontFace(state.front_is_clockwise ? GL_CCW : GL_CW);
+        }
+        set(GL_DEPTH_CLAMP, state.depth.clamp);
+        set(GL_POLYGON_OFFSET_FILL, true);
+        glPolygonOffset(state.depth.bias_slope, state.depth.bias_constant);
+        glProvokingVertex(state.provoking == pipeline::ProvokingVertex::first ? GL_FIRST_VERTEX_CONVENTION
+                                                                              : GL_LAST_VERTEX_CONVENTION);
+        for (GLenum i = 0; i < pipeline::most_clip_distances; ++i)
+            set(GL_CLIP_DISTANCE0 + i, (state.clip_planes >> i & 1U) != 0);
+        glPointSize(state.point_size);
+        glLineWidth(state.line_width);
+    }
+
     void load(const TriangleScene& scene, MesaMode mode, const std::vector<glm::vec4>& colours) {
         // OpenGL's row 0 is the bottom row. With y negated it becomes the top row and the tie rule the top-left rule.
         glm::mat4 matrix = scene.matrix;
         for (int column = 0; column < 4; ++column) matrix[column][1] = -matrix[column][1];
         glUseProgram(program_);
         glUniformMatrix4fv(glGetUniformLocation(program_, "clip_matrix"), 1, GL_FALSE, &matrix[0][0]);
-        glUniform1i(glGetUniformLocation(program_, "counting"), mode == MesaMode::blend ? 0 : 1);
+        glUniform1i(glGetUniformLocation(program_, "mode"), static_cast<GLint>(mode));
+        glUniform4fv(glGetUniformLocation(program_, "planes"), 8, &scene.state.clip_plane[0][0]);
         glUniform1i(glGetUniformLocation(program_, "colours"), 0);
         glBindVertexArray(vertex_array_);
         upload(GL_ARRAY_BUFFER, buffers_[0], scene.positions);

@@ -5,6 +5,7 @@
 #include "tests/support/replay.hpp"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 namespace physics {
 namespace {

@@ -2,6 +2,7 @@
 #include "tests/support/replay.hpp"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 namespace blended_test {
 
@@ -27,8 +28,8 @@ TEST(Blended, EveryModeAndFormatEqualsTheReferenceBitForBit) {
 TEST(Blended, BlendingReadsTheColourTilesAndReplacingDoesNot) {
     const support::Replay over("gen:discs?n=200", blended({"mode=over"}));
     const support::Replay replace("gen:discs?n=200", blended({"mode=replace"}));
-    EXPECT_TRUE(over.run("existing").bytes.contains("dram_tile_read"));
-    EXPECT_FALSE(replace.run("existing").bytes.contains("dram_tile_read"));
+    EXPECT_TRUE(over.run("existing").bytes->contains("dram_tile_read"));
+    EXPECT_FALSE(replace.run("existing").bytes->contains("dram_tile_read"));
 }
 
 TEST(Blended, OneFragmentOverTheBackgroundIsTheClosedForm) {

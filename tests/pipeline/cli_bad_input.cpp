@@ -61,9 +61,9 @@ INSTANTIATE_TEST_SUITE_P(
 
 INSTANTIATE_TEST_SUITE_P(
     Values, CliBadInput,
-    ::testing::Values(Mistake{compare_with("--k", "0"), 1, "k: expected integer 1 to 64, got 0"},
-                      Mistake{compare_with("--k", "65"), 1, "k: expected integer 1 to 64, got 65"},
-                      Mistake{compare_with("--k", "four"), 1, "k: expected integer 1 to 64"},
+    ::testing::Values(Mistake{compare_with("--k", "0"), 1, "k: expected whole number 1 to 64, got 0"},
+                      Mistake{compare_with("--k", "65"), 1, "k: expected whole number 1 to 64, got 65"},
+                      Mistake{compare_with("--k", "four"), 1, "k: expected whole number 1 to 64"},
                       Mistake{compare_with("--entry", "rgb"), 1, "did you mean 'rgbz'?"},
                       Mistake{{"compare", "gen:stack", "--size", "0x0"}, 1, "--size: expected WIDTHxHEIGHT"},
                       Mistake{{"compare", "gen:stack", "--size", "100000x100000"}, 1, "1 to 16384"},

@@ -273,12 +273,17 @@ TEST(CliWords, AReusedFolderHoldsNothingOfAnEarlierRun) {
     EXPECT_EQ(folder.files(), alone);
 }
 
+TEST(CliWords, HelpNamesTheMatricesThatACameraMayBe) {
+    EXPECT_EQ(times(run_program({"compare", "--help"}).out, "scene.view"), 1U);
+}
+
 TEST(CliWords, TablesFitNarrowTerminals) {
     ProgramOptions narrow;
     narrow.environment = {"COLUMNS=40"};
     for (const std::vector<std::string>& arguments :
          {std::vector<std::string>{"compare", "gen:stack", "--size", "16x16", "--no-images"},
           {"run", "gen:stack", "--size", "16x16", "--no-images"},
+          {"geometry", "gen:blob?triangles=800"},
           {"describe", "designs"}}) {
         const ProgramOutcome outcome = run_program(arguments, narrow);
         ASSERT_EQ(outcome.status, 0) << outcome.error;

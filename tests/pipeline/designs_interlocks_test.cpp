@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 namespace designs_interlocks_test {
 
@@ -122,8 +123,8 @@ TEST(FramebufferFetch, TouchesMemoryAtTheEndOnly) {
     const Replay replay("gen:quads?n=16", {.width = 64, .height = 64});
     const RunResult run = replay.run("framebuffer-fetch");
     EXPECT_EQ(run.wrong_pixels, 0U);
-    EXPECT_FALSE(run.bytes.contains("dram_kbuffer_read"));
-    EXPECT_FALSE(run.bytes.contains("dram_tile_read"));
+    EXPECT_FALSE(run.bytes->contains("dram_kbuffer_read"));
+    EXPECT_FALSE(run.bytes->contains("dram_tile_read"));
     // Each tile is stored once, whatever the depth complexity.
     EXPECT_EQ(counter(run.bytes, "dram_tile_write/bytes"), 64U * 64 * 64);
 }

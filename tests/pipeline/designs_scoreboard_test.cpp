@@ -5,6 +5,7 @@
 #include <array>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 namespace designs_scoreboard_test {
 
@@ -18,7 +19,7 @@ const std::string scheduler = "fragment_scheduler/counters/";
 
 /// L_rw: cycles from the dispatch of a quad to the commit that lets the next one of its pixels go.
 double service_interval(const RunResult& run) {
-    const auto& histogram = run.stages.at("fragment_scheduler").at("counters").at("service_interval");
+    const auto& histogram = run.stages->at("fragment_scheduler").at("counters").at("service_interval");
     return histogram.at("sum").get<double>() / histogram.at("count").get<double>();
 }
 

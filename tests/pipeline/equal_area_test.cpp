@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 namespace {
 
@@ -74,10 +75,10 @@ TEST(OnChipArea, WhatADesignAddsGrowsWithItsOptions) {
 TEST(OnChipArea, ARunSaysWhatTheFunctionSays) {
     for (const std::string& design : discs().designs()) {
         const auto run = discs().run(design);
-        EXPECT_EQ(run.area, pipeline::area_json(area_of(design))) << design;
-        EXPECT_EQ(run.area.at("total_bytes"), run.area.at("tile_cache_bytes").get<std::uint64_t>() +
-                                                  run.area.at("payload_bytes").get<std::uint64_t>() +
-                                                  run.area.at("added_bytes").get<std::uint64_t>());
+        EXPECT_EQ(*run.area, pipeline::area_json(area_of(design))) << design;
+        EXPECT_EQ(run.area->at("total_bytes"), run.area->at("tile_cache_bytes").get<std::uint64_t>() +
+                                                   run.area->at("payload_bytes").get<std::uint64_t>() +
+                                                   run.area->at("added_bytes").get<std::uint64_t>());
     }
 }
 
@@ -138,11 +139,11 @@ TEST(EqualArea, TheLargestDesignIsTheMeasureWhereNoneIsGiven) {
     ASSERT_TRUE(comparison.equal_area.has_value());
     EXPECT_TRUE(comparison.equal_area->does_not_fit.empty());
     EXPECT_EQ(comparison.equal_area->bytes, area_of("existing").total_bytes());
-    EXPECT_EQ(comparison.runs[0].area.at("total_bytes"), comparison.equal_area->bytes);
-    EXPECT_TRUE(comparison.variants[0].gpu_changes.empty());
+    EXPECT_EQ(comparison.runs[0].area->at("total_bytes"), comparison.equal_area->bytes);
+    EXPECT_TRUE(comparison.variants[0].gpu_changes->empty());
     for (std::size_t i = 1; i < comparison.runs.size(); ++i) {
-        EXPECT_LE(comparison.runs[i].area.at("total_bytes"), comparison.equal_area->bytes);
-        EXPECT_FALSE(comparison.variants[i].gpu_changes.empty()) << comparison.runs[i].design;
+        EXPECT_LE(comparison.runs[i].area->at("total_bytes"), comparison.equal_area->bytes);
+        EXPECT_FALSE(comparison.variants[i].gpu_changes->empty()) << comparison.runs[i].design;
         EXPECT_EQ(comparison.runs[i].wrong_pixels, 0U);
     }
 }
@@ -153,6 +154,20 @@ TEST(EqualArea, WhatDoesNotFitIsNamedWithWhatItNeeds) {
     EXPECT_EQ(comparison.equal_area->does_not_fit[0].name, "existing");
     EXPECT_GT(comparison.equal_area->does_not_fit[0].needed, 300'000U);
     EXPECT_EQ(comparison.runs.size(), 3U);
+}
+
+TEST(EqualArea, AVariantIsNamedAfterTheCachesThatItGot) {
+    reports::ComparisonRequest request;
+    request.scene = "gen:discs?n=20";
+    request.width = request.height = 64;
+    request.designs = {"blender?rop.kbuffer_cache_bytes=8192&rop.queue=32"};
+    request.equal_area = 400'000;
+    const auto comparison = reports::compare(reports::prepare(request));
+    const auto& variant = comparison.variants.front();
+    const std::string bytes = variant.gpu_changes->at("rop.kbuffer_cache_bytes").dump();
+    ASSERT_NE(bytes, "8192");
+    EXPECT_EQ(variant.label, "blender rop.kbuffer_cache_bytes=" + bytes + " rop.queue=32");
+    EXPECT_EQ(variant.text, "blender?rop.kbuffer_cache_bytes=" + bytes + "&rop.queue=32");
 }
 
 } // namespace

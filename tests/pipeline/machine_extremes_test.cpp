@@ -226,10 +226,10 @@ TEST(Extremes, EachQueueAtItsSmallest) {
 TEST(Extremes, LargestMachine) {
     const Replay replay("gen:discs?n=60&overlap=8&width=64&height=64", {.width = 64, .height = 64});
     for (const Settings& settings :
-         {Settings{"fragment.pipes=60"}, Settings{"fragment.pipes=48", "fragment.quads_in_flight=4096"},
+         {Settings{"fragment.pipes=64"}, Settings{"fragment.pipes=48", "fragment.quads_in_flight=4096"},
           Settings{"memory.partitions=64"}, Settings{"rop.kbuffer_cache_bytes=1073741824"},
           Settings{"rop.queue=4096", "crossbar.queue=4096"}, Settings{"rop.units=256"},
-          Settings{"fragment.pipes=60", "memory.partitions=64", "raster.quads_per_clk=64", "raster.tiles_per_clk=64",
+          Settings{"fragment.pipes=64", "memory.partitions=64", "raster.quads_per_clk=64", "raster.tiles_per_clk=64",
                    "reorder_buffer.retire_per_clk=64"}}) {
         SCOPED_TRACE(fmt::format("{}", fmt::join(settings, " ")));
         expect_good_runs(replay, settings);

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <map>
+#include <nlohmann/json.hpp>
 
 namespace {
 
@@ -21,7 +22,7 @@ Settings operator+(Settings a, const Settings& b) {
 
 std::uint64_t bytes(const RunResult& run, const char* client) {
     const std::string name = std::string("dram_") + client;
-    return run.bytes.contains(name) ? counter(run.bytes, name + "/bytes") : 0;
+    return run.bytes->contains(name) ? counter(run.bytes, name + "/bytes") : 0;
 }
 
 /// `layers` times the whole picture.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 namespace {
 
@@ -31,16 +32,16 @@ std::vector<std::string> steps(const std::string& type, const std::string& range
 using Values = std::vector<std::string>;
 
 TEST(SensitivitySteps, NumbersGoDownAndUpByTheFactorWithinTheirRange) {
-    EXPECT_EQ(steps("integer", "1 to 64", "32"), (Values{"16", "64"}));
-    EXPECT_EQ(steps("integer", "1 to 64", "48"), (Values{"24", "64"}));
-    EXPECT_EQ(steps("integer", "1 to 64", "1"), (Values{"2"}));
-    EXPECT_EQ(steps("integer", "at least 4", "6", "", 3), (Values{"4", "18"}));
+    EXPECT_EQ(steps("whole number", "1 to 64", "32"), (Values{"16", "64"}));
+    EXPECT_EQ(steps("whole number", "1 to 64", "48"), (Values{"24", "64"}));
+    EXPECT_EQ(steps("whole number", "1 to 64", "1"), (Values{"2"}));
+    EXPECT_EQ(steps("whole number", "at least 4", "6", "", 3), (Values{"4", "18"}));
     EXPECT_EQ(steps("number", "0.5 to 1000", "51.2"), (Values{"25.6", "102.4"}));
     EXPECT_EQ(steps("number", "at most 8", "8"), (Values{"4"}));
 }
 
 TEST(SensitivitySteps, ZerosBecomeAFirstNoticeableAmount) {
-    EXPECT_EQ(steps("integer", "0 to 100", "0", "cycles"), (Values{"1"}));
+    EXPECT_EQ(steps("whole number", "0 to 100", "0", "cycles"), (Values{"1"}));
     EXPECT_EQ(steps("number", "0 to 1e6", "0.0", "us"), (Values{"10"}));
     EXPECT_EQ(steps("number", "0 to 100000", "0.0", "bytes per cycle"), (Values{"64"}));
 }

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 namespace study_designs_test {
 
@@ -184,6 +185,17 @@ TEST(StudyOfDesigns, EveryStudyOnHandHasAnAnswerOnRecord) {
         EXPECT_FALSE(study.source.empty()) << name;
     }
     EXPECT_GE(seen, 16U);
+}
+
+TEST(StudyOfDesigns, PointsThatDrawNothingAreNamed) { // the stack leaves the picture on the right
+    const std::string text = "title = \"t\"\nquestion = \"q\"\nx = \"gap\"\nsize = \"8x8\"\nworkload = \"opaque\"\n"
+                             "measure = \"cycles\"\npoints = [ { x = 0 }, { x = 99 } ]\n"
+                             "[[series]]\nname = \"one\"\nscene = \"gen:stack?n=1&x={x}&y=0&w=2&h=2\"\n"
+                             "design = \"blender\"\n";
+    const reports::StudyResult result = run(study_of(text));
+    EXPECT_TRUE(result.values[0].drew);
+    EXPECT_EQ(reports::nothing_drawn(result),
+              "no fragment reached the pixels at gap = 99: numbers of these points say nothing");
 }
 
 } // namespace study_designs_test

@@ -4,9 +4,10 @@
     mutate.py [--work DIR] [--only IDS] [--report] [--no-build]
 
 mutations.toml lists guards: an expression or statement `from` of a file, what it becomes (`to`), and the cases that
-have to fail then. This script copies the tree, rewrites every `from` into a choice between both that an environment
-variable takes at run time, builds ropsim once, and runs the named cases with each mutation active. With none active all
-cases must pass. A mutation that crashes or hangs counts as caught. The tree itself has no trace of any of this.
+have to fail then. Where more than one guard stands before a case, `also` lists what is replaced with the first. This
+script copies the tree, rewrites every `from` into a choice between both that an environment variable takes at run time,
+builds ropsim once, and runs the named cases with each mutation active. With none active all cases must pass. A mutation
+that crashes or hangs counts as caught. The tree itself has no trace of any of this.
 
 --report   runs the whole catalogue with each mutation and prints what fails: for whoever adds a mutation
 --only     mutations by id, separated by commas
@@ -50,6 +51,11 @@ def load():
     return table
 
 
+def replacements(mutations):
+    """Each `from` of each mutation, with the mutation's id and number."""
+    return [dict(one, id=m["id"], number=m["number"]) for m in mutations for one in [m, *m.get("also", [])]]
+
+
 def place_of(text, mutation):
     """Where `from` begins; it occurs once, or `occurrence` says which one is meant."""
     wanted = mutation.get("occurrence")
@@ -77,7 +83,7 @@ def choice(original, group):
 
 def rewrite(tree, mutations):
     by_file = {}
-    for mutation in mutations:
+    for mutation in replacements(mutations):
         by_file.setdefault(mutation["file"], []).append(mutation)
     for name, group in by_file.items():
         path = tree / name
@@ -112,7 +118,7 @@ def copy_tree(tree):
 
 def prepare(tree, mutations):
     wanted = copy_tree(tree)
-    mutated = {pathlib.Path(m["file"]) for m in mutations}
+    mutated = {pathlib.Path(one["file"]) for one in replacements(mutations)}
     for name in sorted(wanted):
         target = tree / name
         target.parent.mkdir(parents=True, exist_ok=True)

@@ -9,29 +9,31 @@
 
 namespace mutations_test {
 
-struct Mutation {
-    std::string id, file, from, to;
+struct Replacement {
+    std::string file, from, to;
     std::size_t occurrence = 0; ///< 0: the only one
+};
+
+struct Mutation {
+    std::string id;
+    std::vector<Replacement> replacements;
     std::vector<std::string> cases;
 };
 
-struct Mutations {
-    std::vector<Mutation> mutations;
-    std::vector<std::string> redundant; ///< cases with more than one guard
-};
+Replacement read_replacement(reports::TomlTable& table) {
+    return {table.text("file"), table.text("from"), table.text("to"),
+            static_cast<std::size_t>(table.number_or("occurrence", 0))};
+}
 
-Mutations read_mutations() {
-    Mutations all;
+std::vector<Mutation> read_mutations() {
+    std::vector<Mutation> all;
     reports::read_toml_file(
         ropsim_test::source_dir() / "tests/stability/mutations.toml", [&](reports::TomlTable& root) {
             root.tables("mutation", [&](reports::TomlTable& table) {
-                all.mutations.push_back({table.text("id"), table.text("file"), table.text("from"), table.text("to"),
-                                         static_cast<std::size_t>(table.number_or("occurrence", 0)),
-                                         table.texts("cases")});
-            });
-            root.tables("redundant", [&](reports::TomlTable& table) {
-                EXPECT_FALSE(table.text("reason").empty());
-                for (const std::string& id : table.texts("cases")) all.redundant.push_back(id);
+                Mutation mutation{table.text("id"), {read_replacement(table)}, table.texts("cases")};
+                table.tables(
+                    "also", [&](reports::TomlTable& more) { mutation.replacements.push_back(read_replacement(more)); });
+                all.push_back(std::move(mutation));
             });
         });
     return all;
@@ -45,24 +47,24 @@ std::size_t occurrences(const std::string& text, const std::string& part) {
 
 TEST(StabilityMutations, EachGuardIsStillWhereItWas) {
     std::set<std::string> ids;
-    for (const Mutation& mutation : read_mutations().mutations) {
+    for (const Mutation& mutation : read_mutations()) {
         SCOPED_TRACE(mutation.id);
         EXPECT_TRUE(ids.insert(mutation.id).second);
-        EXPECT_NE(mutation.from, mutation.to);
         EXPECT_FALSE(mutation.cases.empty());
-        const std::size_t found =
-            occurrences(ropsim_test::file_text(ropsim_test::source_dir() / mutation.file), mutation.from);
-        EXPECT_TRUE(mutation.occurrence == 0 ? found == 1 : mutation.occurrence <= found)
-            << found << " in " << mutation.file;
+        for (const Replacement& one : mutation.replacements) {
+            EXPECT_NE(one.from, one.to);
+            const std::size_t found =
+                occurrences(ropsim_test::file_text(ropsim_test::source_dir() / one.file), one.from);
+            EXPECT_TRUE(one.occurrence == 0 ? found == 1 : one.occurrence <= found)
+                << found << " of '" << one.from << "' in " << one.file;
+        }
     }
     EXPECT_GT(ids.size(), 100U);
 }
 
 TEST(StabilityMutations, EveryCaseIsNamedByOneAndNoOthersAre) {
-    const Mutations all = read_mutations();
-    std::set<std::string> named(all.redundant.begin(), all.redundant.end());
-    EXPECT_EQ(named.size(), all.redundant.size());
-    for (const Mutation& mutation : all.mutations) named.insert(mutation.cases.begin(), mutation.cases.end());
+    std::set<std::string> named;
+    for (const Mutation& mutation : read_mutations()) named.insert(mutation.cases.begin(), mutation.cases.end());
     for (const reports::stability::Case& one : reports::stability::catalogue())
         EXPECT_EQ(named.erase(one.id), 1U) << one.id << " is named by no mutation";
     for (const std::string& id : named) ADD_FAILURE() << id << " is no case";

@@ -4,6 +4,7 @@
 #include "tests/support/program_run.hpp"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 #include <set>
 
 namespace stability_test {

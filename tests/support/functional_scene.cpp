@@ -1,5 +1,6 @@
 #include "tests/support/functional_scene.hpp"
 
+#include <algorithm>
 #include <cstring>
 #include <numeric>
 
@@ -120,7 +121,7 @@ MeshData rectangle(float x0, float y0, float x1, float y1, float depth) {
 }
 
 bool equal(const pipeline::FragmentStream& a, const pipeline::FragmentStream& b) {
-    // Primitive has padding bytes, which have no value.
+    // Primitive and Triangle have padding bytes, which have no value.
     const auto same_primitives = [&] {
         if (a.primitives.size() != b.primitives.size()) return false;
         for (std::size_t i = 0; i < a.primitives.size(); ++i) {
@@ -131,10 +132,15 @@ bool equal(const pipeline::FragmentStream& a, const pipeline::FragmentStream& b)
         }
         return true;
     };
+    const auto same_triangle = [](const pipeline::Triangle& p, const pipeline::Triangle& q) {
+        return p.draw == q.draw && p.primitive == q.primitive && p.first_quad == q.first_quad && p.quads == q.quads &&
+               p.tiles == q.tiles && p.front == q.front;
+    };
     return a.width == b.width && a.height == b.height && same_bytes(a.draws, b.draws) && same_primitives() &&
-           same_bytes(a.triangles, b.triangles) && same_bytes(a.quads, b.quads) && same_bytes(a.depths, b.depths) &&
-           same_bytes(a.colours, b.colours) && same_bytes(a.texture_lines, b.texture_lines) &&
-           a.fragments == b.fragments && a.fragments_discarded == b.fragments_discarded;
+           std::equal(a.triangles.begin(), a.triangles.end(), b.triangles.begin(), b.triangles.end(), same_triangle) &&
+           same_bytes(a.quads, b.quads) && same_bytes(a.depths, b.depths) && same_bytes(a.colours, b.colours) &&
+           same_bytes(a.texture_lines, b.texture_lines) && a.fragments == b.fragments &&
+           a.fragments_discarded == b.fragments_discarded;
 }
 
 } // namespace tests

@@ -136,7 +136,7 @@ GeometryScene make_scene(const std::vector<SceneDraw>& draws) {
         frame_draw.instances.resize(draw.instances, glm::mat4(1.0F));
         scene.frame.draws.push_back(std::move(frame_draw));
         scene.frame.needs.index_buffer |= draw.index_type != pipeline::IndexType::none;
-        add_ranges(scene.stream, index, draw.instances, resources.geometries.back().triangle_count());
+        add_ranges(scene.stream, index, draw.instances, resources.geometries.back().primitive_count());
     }
     resources.place();
     scene.frame.resources = std::make_shared<const pipeline::Resources>(std::move(resources));

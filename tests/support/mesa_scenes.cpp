@@ -1,5 +1,6 @@
 #include "tests/support/mesa_scenes.hpp"
 
+#include "pipeline/functional/front_end.hpp"
 #include "sim/random.hpp"
 #include "tests/support/paths.hpp"
 
@@ -189,6 +190,7 @@ PipelineScene pipeline_scene(const TriangleScene& scene, bool double_sided) {
     PipelineScene result;
     result.resources.buffers = {buffer_with(scene.positions), buffer_with(scene.indices)};
     pipeline::Geometry geometry;
+    geometry.topology = scene.topology;
     geometry.attributes = {pipeline::VertexAttribute{}};
     geometry.vertex_count = static_cast<std::uint32_t>(scene.positions.size());
     geometry.index_type = pipeline::IndexType::u32;
@@ -203,6 +205,51 @@ PipelineScene pipeline_scene(const TriangleScene& scene, bool double_sided) {
     result.view.width = scene.width;
     result.view.height = scene.height;
     return result;
+}
+
+std::uint32_t primitive_of(const pipeline::FragmentStream& stream, const pipeline::Quad& quad) {
+    return stream.triangles[quad.triangle].primitive;
+}
+
+void for_each_fragment(const pipeline::FragmentStream& stream,
+                       const std::function<void(std::size_t pixel, std::size_t quad, std::size_t lane)>& visit) {
+    for (std::size_t i = 0; i < stream.quads.size(); ++i) {
+        const pipeline::Quad& quad = stream.quads[i];
+        for (std::size_t lane = 0; lane < 4; ++lane)
+            if (((quad.covered >> lane) & 1U) != 0)
+                visit((quad.y + lane / 2) * std::size_t{stream.width} + quad.x + lane % 2, i, lane);
+    }
+}
+
+pipeline::FragmentStream rasterize_scene(const TriangleScene& scene, bool double_sided) {
+    const PipelineScene own = pipeline_scene(scene, double_sided);
+    own.resources.validate(scene.name);
+    pipeline::FrontEndOptions options;
+    options.colours = false;
+    options.states = {&scene.state, 1};
+    options.depth_step = 0.0; // the depth buffer of the renderer holds floats
+    return pipeline::rasterize(own.resources, own.draws, std::vector<std::uint32_t>{0}, own.view, options);
+}
+
+OwnPicture count_fragments(const pipeline::FragmentStream& stream) {
+    OwnPicture picture;
+    picture.count.resize(std::size_t{stream.width} * stream.height);
+    picture.id.resize(picture.count.size());
+    picture.depth.assign(picture.count.size(), 1.0F);
+    for_each_fragment(stream, [&](std::size_t pixel, std::size_t quad, std::size_t lane) {
+        ++picture.count[pixel];
+        picture.id[pixel] = primitive_of(stream, stream.quads[quad]) + 1;
+        picture.depth[pixel] = stream.depths[quad][lane];
+    });
+    return picture;
+}
+
+bool fuses_multiply_add() {
+#if defined(__x86_64__)
+    return __builtin_cpu_supports("fma") != 0;
+#else
+    return true;
+#endif
 }
 
 } // namespace tests

@@ -2,10 +2,12 @@
 #pragma once
 
 #include "pipeline/draw.hpp"
+#include "pipeline/fragment_stream.hpp"
 #include "tests/support/mesa_renderer.hpp"
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 
 namespace tests {
@@ -31,5 +33,24 @@ struct PipelineScene {
     pipeline::View view;
 };
 PipelineScene pipeline_scene(const TriangleScene& scene, bool double_sided = true);
+
+/// The front end's fragments of the scene, under its state.
+pipeline::FragmentStream rasterize_scene(const TriangleScene& scene, bool double_sided = true);
+
+std::uint32_t primitive_of(const pipeline::FragmentStream& stream, const pipeline::Quad& quad);
+
+void for_each_fragment(const pipeline::FragmentStream& stream,
+                       const std::function<void(std::size_t pixel, std::size_t quad, std::size_t lane)>& visit);
+
+/// Per pixel, what OpenGL is asked for too.
+struct OwnPicture {
+    std::vector<std::uint32_t> count, id;
+    std::vector<float> depth;
+};
+/// Counts, the last fragment's id and its depth.
+OwnPicture count_fragments(const pipeline::FragmentStream& stream);
+
+/// llvmpipe's viewport transform is a fused multiply-add only where the processor has one.
+bool fuses_multiply_add();
 
 } // namespace tests

@@ -5,6 +5,7 @@
 
 #include <bit>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace support {
 

@@ -1,8 +1,10 @@
 // Two results, member by member: what support::difference() says.
+#include "sim/described_json.hpp"
 #include "tests/support/replay.hpp"
 
 #include <bit>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 #include <string_view>
 #include <tuple>
 

@@ -1,12 +1,14 @@
 #include "tests/support/sample_comparison.hpp"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 namespace ropsim_test {
 
 using pipeline::HazardClass;
 using pipeline::HazardKind;
 using pipeline::RunResult;
+using Json = nlohmann::ordered_json;
 
 namespace {
 
@@ -73,31 +75,31 @@ RunResult common_run(const std::string& design) {
     run.host_seconds = 0.01;
     run.host_ticks = 12345;
     run.layers.resize(layers);
-    run.stages = {{"rasterizer",
-                   {{"params", {{"quads_per_clock", 4}}},
-                    {"counters",
-                     {{"quads", 10},
-                      {"occupancy",
-                       {{"count", 2},
-                        {"sum", 6},
-                        {"min", 1},
-                        {"max", 5},
-                        {"mean", 3.0},
-                        {"bin_width", 0},
-                        {"bins", {{"1", 1}, {"4", 1}}}}}}},
-                    {"activity", {{"busy", 6000}, {"idle", 500}}}}}};
-    run.stalls = {{"rasterizer", {{"idle", 0.1}, {"busy", 0.7}, {"memory", 0.2}}}};
-    run.caches = {{"texture_l1", {{"accesses", 10}, {"hits", 8}, {"misses", 2}, {"hit_rate", 0.8}}}};
-    run.bytes = {{"dram", {{"bytes", 5120}, {"per_fragment", 128.0}}}};
-    run.area = {{"tile_cache_bytes", 65536},
-                {"payload_bytes", 4096},
-                {"added_bytes", 8},
-                {"total_bytes", 69640},
-                {"tile_caches", {{"depth", 0}, {"colour", 0}, {"kbuffer", 65536}}},
-                {"added", {{"scoreboard", 8}}},
-                {"added_comparators", 0},
-                {"added_alu_lanes", 0}};
-    run.passes.push_back({"layers, all", 5, 6000, {{"rasterizer", {{"quads", 10}}}}});
+    *run.stages = {{"rasterizer",
+                    {{"params", {{"quads_per_clock", 4}}},
+                     {"counters",
+                      {{"quads", 10},
+                       {"occupancy",
+                        {{"count", 2},
+                         {"sum", 6},
+                         {"min", 1},
+                         {"max", 5},
+                         {"mean", 3.0},
+                         {"bin_width", 0},
+                         {"bins", {{"1", 1}, {"4", 1}}}}}}},
+                     {"activity", {{"busy", 6000}, {"idle", 500}}}}}};
+    *run.stalls = {{"rasterizer", {{"idle", 0.1}, {"busy", 0.7}, {"memory", 0.2}}}};
+    *run.caches = {{"texture_l1", {{"accesses", 10}, {"hits", 8}, {"misses", 2}, {"hit_rate", 0.8}}}};
+    *run.bytes = {{"dram", {{"bytes", 5120}, {"per_fragment", 128.0}}}};
+    *run.area = {{"tile_cache_bytes", 65536},
+                 {"payload_bytes", 4096},
+                 {"added_bytes", 8},
+                 {"total_bytes", 69640},
+                 {"tile_caches", {{"depth", 0}, {"colour", 0}, {"kbuffer", 65536}}},
+                 {"added", {{"scoreboard", 8}}},
+                 {"added_comparators", 0},
+                 {"added_alu_lanes", 0}};
+    run.passes.push_back({"layers, all", 5, 6000, Json({{"rasterizer", {{"quads", 10}}}})});
     run.draw_counters = {"quads"};
     run.draws.push_back({"draw \"a\"", 0, {10}});
     return run;
@@ -133,7 +135,7 @@ reports::Comparison make(bool colours) {
     frame->view.height = height;
     comparison.frame = frame;
     comparison.scene = {"two <sheets>.glb", "0123456789abcdef", 4, 4, 8, 2, 0, "auto", "", {"1 line primitive"}};
-    comparison.gpu = {"neutral", {{"rop", {{"units", 16}}}}, {{"rop.units", {"public", "data sheet", ""}}}};
+    comparison.gpu = {"neutral", Json({{"rop", {{"units", 16}}}}), {{"rop.units", {"public", "data sheet", ""}}}};
     comparison.reference = correct_pixels(*program);
     for (std::uint32_t i = 0; i < width * height; ++i) comparison.depth_complexity.push_back(fragments_at(i % width));
     RunResult racy = racy_run(), safe = common_run("safe");
@@ -148,8 +150,8 @@ reports::Comparison make(bool colours) {
     comparison.runs = {std::move(racy), std::move(safe)};
     comparison.variants = {{"racy", "racy?bypass_l1=false", "racy bypass_l1=false"}, {"safe", "safe", "safe"}};
     comparison.design_support.assign(
-        2, {{"programs", {"nearest-k rgbz"}}, {"antialiasing", "supersampling"}, {"early_reject", false}});
-    comparison.design_parameters = {{{"bypass_l1", false}}, {{"entries", 64}}};
+        2, Json({{"programs", {"nearest-k rgbz"}}, {"antialiasing", "supersampling"}, {"early_reject", false}}));
+    comparison.design_parameters = {Json({{"bypass_l1", false}}), Json({{"entries", 64}})};
     comparison.host = {1.5, 0.25, 100'000'000, 2};
     return comparison;
 }

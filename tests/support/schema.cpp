@@ -1,6 +1,7 @@
 #include "tests/support/schema.hpp"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <set>
 
 namespace ropsim_test {

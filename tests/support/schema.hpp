@@ -1,7 +1,7 @@
 // A checker for the part of JSON Schema (draft 2020-12) that the project's schemas use.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 

@@ -219,7 +219,7 @@ RC_GTEST_PROP(Clipping, WhateverComesInCornersStayInTheGuardBand, (std::uint64_t
             if ((vertex.outside & (outside::must_clip | outside::not_finite)) == 0) viewport.project(vertex);
         }
         PrimitiveParts parts;
-        cull_and_clip(viewport, Culling::none, {&vertices[0], &vertices[1], &vertices[2]}, parts);
+        cull_and_clip(viewport, Culling::none, {.vertices = {&vertices[0], &vertices[1], &vertices[2]}}, parts);
         for (std::uint32_t i = 0; i < parts.count; ++i) {
             const PrimitivePart& part = parts.parts[i];
             for (const ScreenVertex& corner : part.corners) {

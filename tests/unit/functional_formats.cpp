@@ -1,7 +1,6 @@
-// Number formats, depth and colour surfaces, blending.
-#include "pipeline/functional/colour_format.hpp"
-#include "pipeline/functional/depth_format.hpp"
+// Number formats, depth and colour surfaces.
 #include "pipeline/functional/number_formats.hpp"
+#include "pipeline/functional/surface_texel.hpp"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -58,12 +57,12 @@ TEST(Srgb, EveryCodeSurvivesBothWays) {
     EXPECT_NEAR(srgb_decode_table()[188], 0.5F, 0.004F); // half the light is code 188
 }
 
-TEST(DepthFormat, CodesAreNearestAndOrdered) {
-    EXPECT_EQ(depth_code(DepthFormat::d16, 1.0F), 65535U);
-    EXPECT_EQ(depth_code(DepthFormat::d24, 1.0F), 16777215U);
-    EXPECT_EQ(depth_code(DepthFormat::d24, 0.5F), 8388608U); // 8388607.5: to even
-    EXPECT_EQ(depth_code(DepthFormat::d16, 0.0F), 0U);
-    for (const DepthFormat format : {DepthFormat::d16, DepthFormat::d24, DepthFormat::d32f}) {
+TEST(DepthCodes, CodesAreNearestAndOrdered) {
+    EXPECT_EQ(depth_code(SurfaceFormat::d16, 1.0F), 65535U);
+    EXPECT_EQ(depth_code(SurfaceFormat::d24, 1.0F), 16777215U);
+    EXPECT_EQ(depth_code(SurfaceFormat::d24, 0.5F), 8388608U); // 8388607.5: to even
+    EXPECT_EQ(depth_code(SurfaceFormat::d16, 0.0F), 0U);
+    for (const SurfaceFormat format : {SurfaceFormat::d16, SurfaceFormat::d24, SurfaceFormat::d32f}) {
         EXPECT_EQ(depth_code(format, -1.0F), depth_code(format, 0.0F));
         EXPECT_EQ(depth_code(format, -0.0F), depth_code(format, 0.0F));
         EXPECT_EQ(depth_code(format, 2.0F), farthest_depth(format));
@@ -78,63 +77,30 @@ TEST(DepthFormat, CodesAreNearestAndOrdered) {
     }
 }
 
-TEST(DepthFormat, ComparesInTheFormatNotInFloat) {
+TEST(DepthCodes, CompareInTheFormatNotInFloat) {
+    const auto less = [](DepthCode a, DepthCode b) { return a < b; };
     const float near = 0.4F, far = 0.4F + 0x1p-20F; // differ in D24 and D32F, not in D16
-    EXPECT_FALSE(depth_less(depth_code(DepthFormat::d16, near), depth_code(DepthFormat::d16, far)));
-    EXPECT_TRUE(depth_less(depth_code(DepthFormat::d24, near), depth_code(DepthFormat::d24, far)));
+    EXPECT_FALSE(less(depth_code(SurfaceFormat::d16, near), depth_code(SurfaceFormat::d16, far)));
+    EXPECT_TRUE(less(depth_code(SurfaceFormat::d24, near), depth_code(SurfaceFormat::d24, far)));
     const float closer = std::nextafter(near, 0.0F); // less than a unit of D24
-    EXPECT_FALSE(depth_less(depth_code(DepthFormat::d24, closer), depth_code(DepthFormat::d24, closer)));
-    EXPECT_TRUE(depth_less(depth_code(DepthFormat::d32f, closer), depth_code(DepthFormat::d32f, near)));
+    EXPECT_FALSE(less(depth_code(SurfaceFormat::d24, closer), depth_code(SurfaceFormat::d24, closer)));
+    EXPECT_TRUE(less(depth_code(SurfaceFormat::d32f, closer), depth_code(SurfaceFormat::d32f, near)));
 }
 
-TEST(ColourFormat, WhatIsReadBackIsTheNearestStorableColour) {
+TEST(ColourTexels, WhatIsReadBackIsTheNearestStorableColour) {
     const glm::vec4 colour(0.1F, 1.5F, -0.25F, 0.5F);
-    EXPECT_EQ(through_format(ColourFormat::rgba32f, colour), colour);
-    EXPECT_EQ(through_format(ColourFormat::rgba8, colour), glm::vec4(26.0F / 255.0F, 1.0F, 0.0F, 128.0F / 255.0F));
-    EXPECT_EQ(through_format(ColourFormat::rgba16f, colour),
+    EXPECT_EQ(through_format(SurfaceFormat::rgba32f, colour), colour);
+    EXPECT_EQ(through_format(SurfaceFormat::rgba8, colour), glm::vec4(26.0F / 255.0F, 1.0F, 0.0F, 128.0F / 255.0F));
+    EXPECT_EQ(through_format(SurfaceFormat::rgba16f, colour),
               glm::vec4(half_to_float(float_to_half(0.1F)), 1.5F, -0.25F, 0.5F));
 }
 
-TEST(ColourFormat, NothingInfiniteIsStored) {
-    for (const ColourFormat format : {ColourFormat::rgba8, ColourFormat::rgba16f, ColourFormat::rgba32f}) {
+TEST(ColourTexels, NothingInfiniteIsStored) {
+    for (const SurfaceFormat format : {SurfaceFormat::rgba8, SurfaceFormat::rgba16f, SurfaceFormat::rgba32f}) {
         const glm::vec4 back = through_format(format, glm::vec4(infinity, -infinity, not_a_number, 1e30F));
         for (int i = 0; i < 4; ++i) EXPECT_TRUE(std::isfinite(back[i]));
         EXPECT_EQ(back[2], 0.0F);
     }
-}
-
-TEST(Blending, SourceOverInEightBitsIsExactAtTheEnds) {
-    using Codes = glm::tvec4<std::uint8_t>;
-    for (int c = 0; c < 256; ++c) {
-        const auto code = static_cast<std::uint8_t>(c);
-        const Codes target(code, 255 - code, 7, 9);
-        EXPECT_EQ(blend(BlendMode::over, Codes(1, 2, 3, 0), target), target);
-        EXPECT_EQ(blend(BlendMode::over, Codes(code, 2, 3, 255), target), Codes(code, 2, 3, 255));
-    }
-}
-
-TEST(Blending, EightBitProductsAreRoundedToNearest) {
-    using Codes = glm::tvec4<std::uint8_t>;
-    for (unsigned a = 0; a < 256; ++a)
-        for (unsigned b = 0; b < 256; ++b) {
-            const auto alpha = static_cast<std::uint8_t>(a), value = static_cast<std::uint8_t>(b);
-            const Codes result = blend(BlendMode::over, Codes(value, 0, 0, alpha), Codes(0, 0, 0, 0));
-            EXPECT_EQ(result.r, (a * b + 127) / 255);
-        }
-}
-
-TEST(Blending, OtherModes) {
-    using Codes = glm::tvec4<std::uint8_t>;
-    const Codes a(200, 10, 0, 255), b(100, 20, 0, 1);
-    EXPECT_EQ(blend(BlendMode::add, a, b), Codes(255, 30, 0, 255));
-    EXPECT_EQ(blend(BlendMode::least, a, b), Codes(100, 10, 0, 1));
-    EXPECT_EQ(blend(BlendMode::greatest, a, b), Codes(200, 20, 0, 255));
-    EXPECT_EQ(blend(BlendMode::replace, a, b), a);
-    const glm::vec4 s(2.0F, -1.0F, 0.0F, 0.5F), t(1.0F, 1.0F, 1.0F, 1.0F);
-    EXPECT_EQ(blend(BlendMode::over, s, t), glm::vec4(1.5F, 0.0F, 0.5F, 1.0F));
-    EXPECT_EQ(blend(BlendMode::add, s, t), glm::vec4(3.0F, 0.0F, 1.0F, 1.5F));
-    EXPECT_EQ(blend(BlendMode::least, s, t), glm::vec4(1.0F, -1.0F, 0.0F, 0.5F));
-    EXPECT_EQ(blend(BlendMode::greatest, s, t), glm::vec4(2.0F, 1.0F, 1.0F, 1.0F));
 }
 
 } // namespace

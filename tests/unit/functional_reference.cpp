@@ -48,8 +48,8 @@ struct FrameKit {
     Frame frame;
 
     FrameKit(std::uint32_t width, std::uint32_t height) : scene(width, height) {
-        frame.depth_format = DepthFormat::d32f;
-        frame.colour_format = ColourFormat::rgba32f;
+        frame.depth_format = SurfaceFormat::d32f;
+        frame.colour_format = SurfaceFormat::rgba32f;
     }
 
     std::uint32_t add_layer(float depth, const glm::vec4& colour) {
@@ -94,7 +94,7 @@ TEST(Reference, TheNearestFragmentWinsAndTheFirstOfEqualOnesStays) {
     kit.add_layer(0.25F, {0, 0, 1, 1});
     kit.add_layer(0.75F, {1, 1, 0, 1});
     Pass& pass = kit.add_pass("opaque", {0, 1, 2, 3});
-    pass.depth = {true, true};
+    pass.states[0].depth = {true, true};
     pass.colour = true;
     const ReferenceImage image = kit.run();
     ASSERT_EQ(image.depth.size(), 60U);
@@ -108,15 +108,15 @@ TEST(Reference, TheNearestFragmentWinsAndTheFirstOfEqualOnesStays) {
 }
 
 TEST(Reference, DepthsThatAreEqualInTheFormatAreEqual) {
-    for (const DepthFormat format : {DepthFormat::d16, DepthFormat::d24}) {
+    for (const SurfaceFormat format : {SurfaceFormat::d16, SurfaceFormat::d24}) {
         FrameKit kit(4, 4);
         kit.add_layer(0.4F, {1, 0, 0, 1});
         kit.add_layer(0.4F - 0x1p-20F, {0, 1, 0, 1});
         Pass& pass = kit.add_pass("opaque", {0, 1});
-        pass.depth = {true, true};
+        pass.states[0].depth = {true, true};
         pass.colour = true;
         kit.frame.depth_format = format;
-        EXPECT_EQ(kit.run().colour[0], format == DepthFormat::d16 ? 1.0F : 0.0F);
+        EXPECT_EQ(kit.run().colour[0], format == SurfaceFormat::d16 ? 1.0F : 0.0F);
     }
 }
 
@@ -124,7 +124,7 @@ TEST(Reference, UncoveredPixelsHaveBackgroundAndFarthestDepth) {
     FrameKit kit(4, 4);
     kit.scene.add(tests::rectangle(0, 0, 2, 4));
     Pass& pass = kit.add_pass("opaque", {0});
-    pass.depth = {true, true};
+    pass.states[0].depth = {true, true};
     pass.colour = true;
     kit.frame.background = glm::vec4(0.25F, 0.5F, 0.75F, 1.0F);
     const ReferenceImage image = kit.run();
@@ -183,10 +183,10 @@ TEST(Reference, AReadOnlyDepthTestKeepsHiddenFragmentsOut) {
     const std::uint32_t before = kit.add_layer(0.25F, {1, 1, 1, 1});
     const std::uint32_t behind = kit.add_layer(0.75F, {1, 1, 1, 1});
     Pass& opaque = kit.add_pass("opaque", {wall});
-    opaque.depth = {true, true};
+    opaque.states[0].depth = {true, true};
     Pass& peel = kit.add_pass("peel", {before, behind, wall});
     peel.kbuffer = true;
-    peel.depth = {true, false};
+    peel.states[0].depth = {true, false};
     kit.frame.program = std::make_shared<SmallestDepths>(4, 1);
     const ReferenceImage image = kit.run();
     EXPECT_EQ(image.kbuffer[0], 0.25F);
@@ -199,7 +199,7 @@ TEST(Reference, ClearPassesSetSurfacesBack) {
     FrameKit kit(8, 8);
     const std::uint32_t layer = kit.add_layer(0.5F, {1, 0, 0, 1});
     Pass& first = kit.add_pass("first", {layer});
-    first.depth = {true, true};
+    first.states[0].depth = {true, true};
     first.colour = first.kbuffer = true;
     kit.frame.program = std::make_shared<SmallestDepths>(1, 1);
     kit.add_pass("clear", PassKind::clear).writes = {"depth", "colour", "kbuffer"};
@@ -268,7 +268,7 @@ TEST(Reference, TheResultIsTheSameForAnyNumberOfThreads) {
 
 TEST(Reference, TheNumberOfStreamsIsThatOfTheDrawPasses) {
     FrameKit kit(4, 4);
-    kit.add_pass("opaque", std::vector{kit.add_layer(0.5F, {1, 1, 1, 1})}).depth = {true, true};
+    kit.add_pass("opaque", std::vector{kit.add_layer(0.5F, {1, 1, 1, 1})}).states[0].depth = {true, true};
     kit.run();
     EXPECT_THROW(run_reference(kit.frame, {}), sim::InternalError);
 }
@@ -294,7 +294,7 @@ TEST(Composite, OpaqueSurfacesAreTheBackground) {
     FrameKit kit(2, 2);
     const std::uint32_t wall = kit.add_layer(0.5F, {0, 1, 0, 1}), glass = kit.add_layer(0.25F, {1, 0, 0, 1});
     Pass& opaque = kit.add_pass("opaque", {wall});
-    opaque.depth = {true, true};
+    opaque.states[0].depth = {true, true};
     opaque.colour = true;
     kit.add_pass("peel", {glass}).kbuffer = true;
     kit.add_pass("resolve", PassKind::resolve);

@@ -92,6 +92,67 @@ TEST(AttributeFetch, AnyStrideAndAlignment) {
     EXPECT_EQ(fetch(ComponentType::f32, 1, false, bytes, 7, 3, 2), glm::vec4(3.25F, 0, 0, 1));
 }
 
+TEST(AttributeFetch, DivisorsAdvanceByInstances) {
+    Resources resources;
+    resources.buffers = {tests::buffer_of(std::vector<float>{0, 1, 2, 3})};
+    VertexAttribute attribute{Semantic::generic, ComponentType::f32, 1, false, 0, 4, 4};
+    attribute.divisor = 2;
+    for (const std::uint32_t instance : {0U, 1U, 2U, 3U, 5U})
+        for (const std::uint32_t vertex : {0U, 7U})
+            EXPECT_EQ(AttributeReader(resources, attribute, instance)(vertex).x,
+                      1.0F + static_cast<float>(instance / 2));
+    EXPECT_TRUE(has_elements_for(resources, attribute, 6));
+    EXPECT_FALSE(has_elements_for(resources, attribute, 7));
+    attribute.divisor = 0;
+    EXPECT_TRUE(has_elements_for(resources, attribute, 1000));
+}
+
+TEST(AttributeFetch, InstancesHaveTheirOwnColoursAndPlaces) {
+    tests::FunctionalScene scene(32, 8);
+    tests::MeshData mesh = tests::rectangle(0, 0, 8, 8);
+    mesh.colours = {{0.25F, 0, 0, 1}, {0.5F, 0, 0, 1}, {0.75F, 0, 0, 1}, {1, 0, 0, 1}};
+    scene.add(mesh);
+    for (VertexAttribute& attribute : scene.resources.geometries[0].attributes)
+        if (attribute.semantic == Semantic::colour) attribute.divisor = 2;
+    scene.draws[0].instances.clear();
+    for (int i = 0; i < 4; ++i) {
+        glm::mat4 model(1.0F);
+        model[3][0] = static_cast<float>(8 * i);
+        scene.draws[0].instances.push_back(model);
+    }
+    const FragmentStream stream = scene.rasterize();
+    EXPECT_EQ(stream.fragments, 256U);
+    for (std::size_t i = 0; i < stream.quads.size(); ++i) {
+        if ((stream.quads[i].covered & 1U) == 0) continue;
+        EXPECT_EQ(stream.colours[i][0].r, stream.quads[i].x < 16 ? 0.25F : 0.5F);
+    }
+    for (VertexAttribute& attribute : scene.resources.geometries[0].attributes)
+        if (attribute.semantic == Semantic::colour) attribute.offset = 3 * sizeof(glm::vec4);
+    EXPECT_THROW(scene.rasterize(), sim::InputError);
+}
+
+// Instances of one matrix whose positions advance are not the same vertices.
+TEST(AttributeFetch, PositionsMayAdvanceByInstances) {
+    tests::FunctionalScene scene(16, 8);
+    scene.add({.positions = {{2.5F, 2.5F, 0.5F}, {5.5F, 2.5F, 0.5F}, {9.5F, 2.5F, 0.5F}},
+               .normals = {},
+               .colours = {},
+               .texcoords = {},
+               .indices = {}});
+    Geometry& geometry = scene.resources.geometries[0];
+    geometry.topology = Topology::points;
+    geometry.index_count = geometry.vertex_count = 1;
+    geometry.attributes[0].divisor = 1;
+    geometry.attributes[0].components = 2; // depth 0 then
+    scene.draws[0].instances.assign(3, glm::mat4(1.0F));
+    const FragmentStream stream = scene.rasterize();
+    ASSERT_EQ(stream.quads.size(), 3U);
+    EXPECT_EQ(stream.quads[0].x, 2U);
+    EXPECT_EQ(stream.quads[1].x, 4U);
+    EXPECT_EQ(stream.quads[2].x, 8U);
+    EXPECT_EQ(stream.depths[0][0], 0.0F);
+}
+
 TEST(IndexFetch, EveryWidthAndNone) {
     Resources resources;
     resources.buffers = {tests::buffer_of(std::vector<std::uint8_t>{9, 1, 2, 3, 4, 5, 6, 7, 8})};
@@ -147,7 +208,7 @@ struct RestartedGeometry {
     std::vector<std::array<std::uint32_t, 3>> triangles() {
         std::vector<std::array<std::uint32_t, 3>> list;
         const PrimitiveReader read(resources, geometry());
-        for (std::uint32_t i = 0; i < geometry().triangle_count(); ++i) list.push_back(read(i));
+        for (std::uint32_t i = 0; i < geometry().primitive_count(); ++i) list.push_back(read(i));
         return list;
     }
 };
@@ -161,6 +222,13 @@ TEST(PrimitiveRestart, EndsStripsFansAndBegunTriangles) {
     EXPECT_EQ(RestartedGeometry(Topology::triangle_fan, indices).triangles(),
               (Triangles{{1, 2, 0}, {2, 3, 0}, {5, 6, 4}, {6, 7, 4}, {7, 8, 4}}));
     EXPECT_EQ(RestartedGeometry(Topology::triangles, indices).triangles(), (Triangles{{0, 1, 2}, {4, 5, 6}}));
+    const std::vector<std::uint16_t> few{0, 1, 2, 0xFFFF, 9, 0xFFFF, 4, 5};
+    EXPECT_EQ(RestartedGeometry(Topology::points, few).triangles(),
+              (Triangles{{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {9, 9, 9}, {4, 4, 4}, {5, 5, 5}}));
+    EXPECT_EQ(RestartedGeometry(Topology::lines, few).triangles(), (Triangles{{0, 1, 1}, {4, 5, 5}}));
+    EXPECT_EQ(RestartedGeometry(Topology::line_strip, few).triangles(), (Triangles{{0, 1, 1}, {1, 2, 2}, {4, 5, 5}}));
+    EXPECT_EQ(RestartedGeometry(Topology::line_loop, few).triangles(),
+              (Triangles{{0, 1, 1}, {1, 2, 2}, {2, 0, 0}, {4, 5, 5}, {5, 4, 4}}));
 }
 
 TEST(PrimitiveRestart, RunsWithoutTrianglesLeaveNoTrace) {

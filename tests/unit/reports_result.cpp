@@ -8,6 +8,7 @@
 #include "tests/support/schema.hpp"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 namespace {
 

@@ -6,9 +6,11 @@
 #include "reports/html/page.hpp"
 #include "reports/numbers.hpp"
 #include "reports/terminal_table.hpp"
+#include "reports/text_table.hpp"
 #include "tests/support/sample_comparison.hpp"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 namespace {
@@ -164,6 +166,19 @@ TEST(ReportsText, LeftOutIsStatedOnceWithItsReason) {
 TEST(ReportsText, WrapBreaksBetweenWords) {
     EXPECT_EQ(reports::wrap("aaa bbb ccc", 7, 2), "aaa bbb\n  ccc\n");
     EXPECT_EQ(reports::wrap("  a  b", 80, 2), "  a  b\n");
+    EXPECT_EQ(reports::wrap("  aaaaaaaaa b", 7, 2), "  aaaaaaaaa\n  b\n") << "no empty line before a long word";
+}
+
+TEST(ReportsText, WrapBreaksLongVariantsBetweenTheirSettings) {
+    EXPECT_EQ(reports::wrap("a?b=1&c=2&d=3: x", 10, 2), "a?b=1&\n  c=2&d=3:\n  x\n");
+    EXPECT_EQ(reports::wrap("a?b=1&c=2 x", 20, 2), "a?b=1&c=2 x\n") << "where it fits it stays whole";
+}
+
+TEST(ReportsText, TablesOfNarrowTerminalsCutWhatIsTooWide) {
+    const std::string wide(50, 'w');
+    for (const std::string& line : lines_of(reports::text_table({{"one", "", true}, {"two", "", true}, {"three", ""}},
+                                                                {{wide, wide, "3"}}, {false, 40})))
+        EXPECT_LE(line.size(), 40U) << line;
 }
 
 TEST(ReportsText, PageIsSelfContainedAndEscaped) {

@@ -1,8 +1,10 @@
 #include "sim/config.hpp"
+#include "sim/described_json.hpp"
 #include "sim/suggest.hpp"
 
 #include <fstream>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 #include <rapidcheck/gtest.h>
 
 namespace {
@@ -143,7 +145,7 @@ TEST(Config, SetTakesTextWithoutQuotes) {
 }
 
 TEST(Config, ErrorsOfSetNameTheOption) {
-    EXPECT_EQ(error_of_set("rop.tiles=0"), "--set: rop.tiles: expected integer 1 to 65536, got 0");
+    EXPECT_EQ(error_of_set("rop.tiles=0"), "--set: rop.tiles: expected whole number 1 to 65536, got 0");
     EXPECT_EQ(error_of_set("rop.tils=1"), "--set: unknown key 'rop.tils'; did you mean 'rop.tiles'?");
     for (const char* bad : {"rop.tiles", "=3", "rop..tiles=3", "rop.tiles=3\nx=4", "rop tiles=3", "", "[rop]=3", "#=1"})
         EXPECT_EQ(error_of_set(bad).find("--set: expected SECTION.KEY=VALUE"), 0U) << error_of_set(bad);
@@ -151,8 +153,8 @@ TEST(Config, ErrorsOfSetNameTheOption) {
 
 TEST(Config, ErrorsNameFileLineAndColumn) {
     EXPECT_EQ(error_in("[rop]\ntils = 5"), "g70.toml:2:8: unknown key 'rop.tils'; did you mean 'rop.tiles'?");
-    EXPECT_EQ(error_in("[rop]\n\ntiles = 'x'"), "g70.toml:3:9: rop.tiles: expected integer 1 to 65536, got \"x\"");
-    EXPECT_EQ(error_in("[rop]\ntiles = 5.5"), "g70.toml:2:9: rop.tiles: expected integer 1 to 65536, got 5.5");
+    EXPECT_EQ(error_in("[rop]\n\ntiles = 'x'"), "g70.toml:3:9: rop.tiles: expected whole number 1 to 65536, got \"x\"");
+    EXPECT_EQ(error_in("[rop]\ntiles = 5.5"), "g70.toml:2:9: rop.tiles: expected whole number 1 to 65536, got 5.5");
     EXPECT_EQ(error_in("[rop]\nclock_mhz = nan"), "g70.toml:2:13: rop.clock_mhz: expected number at least 1, got nan");
     EXPECT_EQ(error_in("[rop]\nvisibility = 'writebak'"),
               "g70.toml:2:14: rop.visibility: expected one of rop_cache | writeback | never_until_flush, got "

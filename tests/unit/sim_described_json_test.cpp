@@ -1,6 +1,7 @@
 #include "sim/described_json.hpp"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 #include <rapidcheck/gtest.h>
 
 namespace {
@@ -115,10 +116,10 @@ TEST(DescribedJson, NamesUnknownKeysWithASuggestion) {
 TEST(DescribedJson, SaysWhatWasExpected) {
     EXPECT_EQ(error_of("[]"), "x.json: expected a table, got []");
     EXPECT_EQ(error_of(R"({"flag": 1})"), "x.json: flag: expected true or false, got 1");
-    EXPECT_EQ(error_of(R"({"natural": -1})"), "x.json: natural: expected integer, got -1");
+    EXPECT_EQ(error_of(R"({"natural": -1})"), "x.json: natural: expected whole number, got -1");
     EXPECT_EQ(error_of(R"({"whole": 9223372036854775808})"),
-              "x.json: whole: expected integer, got 9223372036854775808");
-    EXPECT_EQ(error_of(R"({"whole": 1.5})"), "x.json: whole: expected integer, got 1.5");
+              "x.json: whole: expected whole number, got 9223372036854775808");
+    EXPECT_EQ(error_of(R"({"whole": 1.5})"), "x.json: whole: expected whole number, got 1.5");
     EXPECT_EQ(error_of(R"({"real": "1"})"), "x.json: real: expected number, got \"1\"");
     EXPECT_EQ(error_of(R"({"single": 1e300})"), "x.json: single: expected number, got 1e+300");
     EXPECT_EQ(error_of(R"({"text": 1})"), "x.json: text: expected text, got 1");
@@ -126,13 +127,13 @@ TEST(DescribedJson, SaysWhatWasExpected) {
               "x.json: order: expected one of row_major | tiled, got \"tield\"; did you mean 'tiled'?");
     EXPECT_EQ(error_of(R"({"order": 1})"), "x.json: order: expected one of row_major | tiled, got 1");
     EXPECT_EQ(error_of(R"({"lines": 3})"), "x.json: lines: expected a table, got 3");
-    EXPECT_EQ(error_of(R"({"lines": {"lines": 0}})"), "x.json: lines.lines: expected integer 1 to 100, got 0");
-    EXPECT_EQ(error_of(R"({"lines": {"lines": 300}})"), "x.json: lines.lines: expected integer 1 to 100, got 300");
+    EXPECT_EQ(error_of(R"({"lines": {"lines": 0}})"), "x.json: lines.lines: expected whole number 1 to 100, got 0");
+    EXPECT_EQ(error_of(R"({"lines": {"lines": 300}})"), "x.json: lines.lines: expected whole number 1 to 100, got 300");
     EXPECT_EQ(error_of(R"({"list": [{"lines": 1}, {"lines": 0}]})"),
-              "x.json: list.1.lines: expected integer 1 to 100, got 0");
+              "x.json: list.1.lines: expected whole number 1 to 100, got 0");
     EXPECT_EQ(error_of(R"({"pair": [1]})"), "x.json: pair: expected 2 values, got [1]");
-    EXPECT_EQ(error_of(R"({"pair": [1, 10]})"), "x.json: pair.1: expected integer at most 9, got 10");
-    EXPECT_EQ(error_of(R"({"pair": 5})"), "x.json: pair: expected list of integer, got 5");
+    EXPECT_EQ(error_of(R"({"pair": [1, 10]})"), "x.json: pair.1: expected whole number at most 9, got 10");
+    EXPECT_EQ(error_of(R"({"pair": 5})"), "x.json: pair: expected list of whole number, got 5");
     EXPECT_EQ(error_of(R"({"counter": -1})"), "x.json: counter: expected counter, got -1");
     EXPECT_EQ(error_of(R"({"histogram": {"bins": {"3": 1}}})"),
               "x.json: histogram.bins: expected starts of bins as keys, got \"3\"");

@@ -128,8 +128,8 @@ TEST(Described, DescribeListsNestedFieldsWithDefaultsAndRanges) {
                         "|" + info.range);
     EXPECT_EQ(lines, (std::vector<std::string>{
                          "rop.interlock|true or false||Hold overlapping quads|true|",
-                         "rop.offset|integer||Offset|-3|at least -8",
-                         "rop.bytes|integer|B|Bytes|1|1 to 1048576",
+                         "rop.offset|whole number||Offset|-3|at least -8",
+                         "rop.bytes|whole number|B|Bytes|1|1 to 1048576",
                          "rop.scale|number||Scale|0.1|at most 2",
                          "rop.exact|number||Exact|0.1|",
                          "rop.policy|choice||Who goes first|oldest_first|round_robin | oldest_first",

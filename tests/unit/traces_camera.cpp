@@ -110,11 +110,15 @@ TEST(Cameras, ScreenSpaceMapsPixelsToPixels) {
 TEST(Cameras, ErrorsNameWhatWasExpected) {
     EXPECT_EQ(error_of(unit_scene(), "0"), "camera '0': expected a number below 0, as many cameras as unit has");
     EXPECT_EQ(error_of(unit_scene(), "front"),
-              "camera 'front': expected auto, the number of a camera, or ex,ey,ez,tx,ty,tz,fovy");
-    EXPECT_EQ(error_of(unit_scene(), "1,2,3,4,5,6"),
-              "camera '1,2,3,4,5,6': expected auto, the number of a camera, or ex,ey,ez,tx,ty,tz,fovy");
-    EXPECT_EQ(error_of(unit_scene(), "1,2,3,4,5,6,nan"),
-              "camera '1,2,3,4,5,6,nan': expected auto, the number of a camera, or ex,ey,ez,tx,ty,tz,fovy");
+              "camera 'front': expected auto, the number of a camera, ex,ey,ez,tx,ty,tz,fovy, or the 32 numbers of a "
+              "view and a projection matrix");
+    EXPECT_EQ(
+        error_of(unit_scene(), "1,2,3,4,5,6"),
+        "camera '1,2,3,4,5,6': expected auto, the number of a camera, ex,ey,ez,tx,ty,tz,fovy, or the 32 numbers of a "
+        "view and a projection matrix");
+    EXPECT_EQ(error_of(unit_scene(), "1,2,3,4,5,6,nan"), "camera '1,2,3,4,5,6,nan': expected auto, the number of a "
+                                                         "camera, ex,ey,ez,tx,ty,tz,fovy, or the 32 numbers of a "
+                                                         "view and a projection matrix");
     EXPECT_EQ(error_of(unit_scene(), "1,2,3,1,2,3,45"),
               "camera '1,2,3,1,2,3,45': expected a target that is not the eye");
     EXPECT_EQ(error_of(unit_scene(), "1,2,3,0,0,0,180"),

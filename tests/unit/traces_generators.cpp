@@ -139,8 +139,9 @@ TEST(Generators, ErrorsNameWhatWasExpected) {
               "did you mean 'grass'?");
     EXPECT_EQ(error_of("gen:grass?bladez=5"), "gen:grass: unknown key 'bladez'; did you mean 'blades'?");
     EXPECT_EQ(error_of("gen:grass?bla\ndes=5"), "gen:grass: unknown key 'bla des'; did you mean 'blades'?");
-    EXPECT_EQ(error_of("gen:grass?blades=0"), "gen:grass: blades: expected integer 1 to 20000000, got 0");
-    EXPECT_EQ(error_of("gen:grass?blades=many"), "gen:grass: blades: expected integer 1 to 20000000, got \"many\"");
+    EXPECT_EQ(error_of("gen:grass?blades=0"), "gen:grass: blades: expected whole number 1 to 20000000, got 0");
+    EXPECT_EQ(error_of("gen:grass?blades=many"),
+              "gen:grass: blades: expected whole number 1 to 20000000, got \"many\"");
     EXPECT_EQ(error_of("gen:grass?blades"), "gen:grass: expected KEY=VALUE, got 'blades'");
     EXPECT_EQ(error_of("gen:stack?n=1&n=2"), "gen:stack: 'n' is set twice");
     EXPECT_EQ(error_of("gen:stack?order=up"),

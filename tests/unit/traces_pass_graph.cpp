@@ -90,8 +90,8 @@ TEST(PassGraph, ChainsOfReadersKeepTheirPasses) {
     graph.output("picture");
     const Frame frame = graph.lower();
     EXPECT_EQ(pass_names(frame), (Names{"first", "second", "last"}));
-    EXPECT_TRUE(frame.passes[1].depth.test);
-    EXPECT_FALSE(frame.passes[1].depth.write);
+    EXPECT_TRUE(frame.passes[1].states[0].depth.test);
+    EXPECT_FALSE(frame.passes[1].states[0].depth.write);
     EXPECT_TRUE(frame.needs.early_depth);
 }
 
@@ -122,7 +122,7 @@ TEST(Workloads, TransparencyDrawsEverythingIntoTheKBuffer) {
     EXPECT_EQ(pass_names(frame), (Names{"clear k-buffer", "geometry", "resolve"}));
     EXPECT_EQ(frame.passes[1].draws, (std::vector<std::uint32_t>{0, 1, 2}));
     EXPECT_TRUE(frame.passes[1].kbuffer);
-    EXPECT_FALSE(frame.passes[1].depth.test);
+    EXPECT_FALSE(frame.passes[1].states[0].depth.test);
     EXPECT_TRUE(frame.passes[1].both_faces);
     ASSERT_NE(frame.program, nullptr);
     EXPECT_EQ(frame.program->k(), 4U);
@@ -153,10 +153,11 @@ TEST(Workloads, TransparentMaterialsLieBehindOpaqueOnes) {
     const Frame frame = frame_with({"transparent=materials"});
     EXPECT_EQ(pass_names(frame), (Names{"clear", "opaque", "clear k-buffer", "geometry", "resolve"}));
     EXPECT_EQ(frame.passes[1].draws, (std::vector<std::uint32_t>{0, 1}));
-    EXPECT_TRUE(frame.passes[1].depth.test && frame.passes[1].depth.write && frame.passes[1].colour);
+    EXPECT_TRUE(frame.passes[1].states[0].depth.test && frame.passes[1].states[0].depth.write &&
+                frame.passes[1].colour);
     EXPECT_EQ(frame.passes[3].draws, (std::vector<std::uint32_t>{2}));
-    EXPECT_TRUE(frame.passes[3].depth.test && frame.passes[3].kbuffer);
-    EXPECT_FALSE(frame.passes[3].depth.write);
+    EXPECT_TRUE(frame.passes[3].states[0].depth.test && frame.passes[3].kbuffer);
+    EXPECT_FALSE(frame.passes[3].states[0].depth.write);
     EXPECT_TRUE(frame.needs.depth && frame.needs.early_depth && frame.needs.colour_surface && frame.needs.kbuffer);
 }
 
@@ -182,7 +183,7 @@ TEST(Workloads, SceneWithoutTransparentMaterialsHasNoKBuffer) {
 TEST(Workloads, OpaqueIsOnePassWithDepth) {
     const Frame frame = frame_with({"depth_format=d16"}, "opaque");
     EXPECT_EQ(pass_names(frame), (Names{"clear", "opaque"}));
-    EXPECT_EQ(frame.depth_format, pipeline::DepthFormat::d16);
+    EXPECT_EQ(frame.depth_format, pipeline::SurfaceFormat::d16);
     EXPECT_EQ(frame.program, nullptr);
     EXPECT_TRUE(frame.needs.depth && frame.needs.colour_surface && frame.needs.normals);
 }
@@ -190,7 +191,7 @@ TEST(Workloads, OpaqueIsOnePassWithDepth) {
 TEST(Workloads, GeometryIsOnePassOfDepthsThatReadsAllAttributesOrPositions) {
     const Frame all = frame_with({}, "geometry");
     EXPECT_EQ(pass_names(all), (Names{"clear", "geometry"}));
-    EXPECT_TRUE(all.passes[1].depth.test && all.passes[1].depth.write);
+    EXPECT_TRUE(all.passes[1].states[0].depth.test && all.passes[1].states[0].depth.write);
     EXPECT_TRUE(all.passes[1].colour && !all.passes[1].kbuffer);
     EXPECT_TRUE(all.needs.colours && all.needs.colour_surface);
     EXPECT_EQ(all.needs.fragment_colour, pipeline::FragmentColour::flat);
@@ -201,7 +202,7 @@ TEST(Workloads, GeometryIsOnePassOfDepthsThatReadsAllAttributesOrPositions) {
 
     const Frame positions = frame_with({"reads=position", "depth_format=d32f"}, "geometry");
     EXPECT_EQ(positions.needs.attributes, 0U);
-    EXPECT_EQ(positions.depth_format, pipeline::DepthFormat::d32f);
+    EXPECT_EQ(positions.depth_format, pipeline::SurfaceFormat::d32f);
     EXPECT_EQ(left_out(positions)[1], "normals: fragments have the base colour of their material");
 }
 
@@ -249,7 +250,7 @@ TEST(Workloads, EveryAttributeThatNobodyReadsIsListed) {
 }
 
 TEST(Workloads, OptionsAreCheckedByName) {
-    EXPECT_EQ(error_of({"k=65"}), "workload transparency: k: expected integer 1 to 64, got 65");
+    EXPECT_EQ(error_of({"k=65"}), "workload transparency: k: expected whole number 1 to 64, got 65");
     EXPECT_EQ(error_of({"K=4"}), "workload transparency: unknown key 'K'");
     EXPECT_EQ(error_of({"opacty=0.5"}), "workload transparency: unknown key 'opacty'; did you mean 'opacity'?");
     EXPECT_EQ(error_of({"entry=rgb"}),

@@ -78,7 +78,7 @@ ChildResult in_child_process(std::size_t size,
     return {{}, failure.empty() ? "the decoder failed" : failure};
 }
 
-const void* load_module(const char* file, const char* function, const char* purpose, const char* package) {
+void* function_of_module(const char* file, const char* function, const char* purpose, const char* package) {
     const auto fail = [&](const std::string& reason) {
         throw sim::InputError(fmt::format("{} needs {} and {} (Debian): {}", purpose, file, package, reason));
     };
@@ -86,10 +86,9 @@ const void* load_module(const char* file, const char* function, const char* purp
     if (!path) fail(fmt::format("{} was not found", file));
     void* library = ::dlopen(path->c_str(), RTLD_NOW | RTLD_LOCAL); // a second time gives the same one
     if (library == nullptr) fail(::dlerror());
-    using Function = const void* (*)();
-    const auto table = reinterpret_cast<Function>(::dlsym(library, function));
-    if (table == nullptr) fail(path->string() + " is of another version of ropsim");
-    return table();
+    void* address = ::dlsym(library, function);
+    if (address == nullptr) fail(path->string() + " is of another version of ropsim");
+    return address;
 }
 
 } // namespace traces::gltf

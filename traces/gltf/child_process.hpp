@@ -19,8 +19,14 @@ struct ChildResult {
 ChildResult in_child_process(std::size_t size,
                              const std::function<int(std::span<unsigned char>, std::span<char>)>& work);
 
-/// The table of functions of a module (ropsim_draco.so), loaded once. Throws sim::InputError that names the module and
-/// the Debian package that it needs.
-const void* load_module(const char* file, const char* function, const char* purpose, const char* package);
+/// A function of a module (ropsim_draco.so), which is loaded once. Throws sim::InputError that names the module and the
+/// Debian package that it needs.
+void* function_of_module(const char* file, const char* function, const char* purpose, const char* package);
+
+/// The table of functions that it returns.
+template <class Module>
+const Module* load_module(const char* file, const char* function, const char* purpose, const char* package) {
+    return reinterpret_cast<const Module* (*)()>(function_of_module(file, function, purpose, package))();
+}
 
 } // namespace traces::gltf

@@ -16,7 +16,7 @@ constexpr std::size_t largest_part = std::size_t{1} << 31U;
 template <class Module>
 const Module& module_of(const char* file, const char* function, std::uint32_t version, const char* purpose,
                         const char* package) {
-    const auto* table = static_cast<const Module*>(load_module(file, function, purpose, package));
+    const auto* table = load_module<Module>(file, function, purpose, package);
     if (table == nullptr || table->version != version)
         throw sim::InputError(fmt::format("{} needs {} of this version of ropsim", purpose, file));
     return *table;

@@ -6,6 +6,8 @@
 #include "traces/gltf/json_check.hpp"
 #include "traces/gltf/property_check.hpp"
 
+#include <nlohmann/json.hpp>
+
 namespace traces::gltf {
 
 using nlohmann::json;

@@ -4,7 +4,6 @@
 #include "pipeline/draw.hpp"
 #include "traces/gltf/glb_file.hpp"
 
-#include <nlohmann/json.hpp>
 #include <optional>
 
 namespace traces::gltf {

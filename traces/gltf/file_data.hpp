@@ -4,7 +4,6 @@
 #include "traces/hash.hpp"
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
 #include <string>

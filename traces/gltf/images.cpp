@@ -101,8 +101,8 @@ Texels decode_png_or_jpeg(const std::string& place, Encoded bytes, Size size) {
 }
 
 Texels decode_webp(const std::string& place, Encoded bytes, Size size) {
-    const auto* module = static_cast<const RopsimTextureModule*>(
-        load_module("ropsim_textures.so", ROPSIM_TEXTURE_MODULE_FUNCTION, "a WebP texture", "libopenimageio2.4"));
+    const auto* module = load_module<RopsimTextureModule>("ropsim_textures.so", ROPSIM_TEXTURE_MODULE_FUNCTION,
+                                                          "a WebP texture", "libopenimageio2.4");
     if (module == nullptr || module->version != ROPSIM_TEXTURE_MODULE_VERSION)
         throw sim::InputError(fmt::format("{}: ropsim_textures.so is of another version of ropsim", place));
     ChildResult result = in_child_process(std::size_t{size.width} * size.height * 4,

@@ -2,7 +2,7 @@
 // for none, and ends up in deep recursion for deeply nested ones.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 #include <vector>

@@ -3,7 +3,7 @@
 
 #include "traces/gltf/properties.hpp"
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 #include <vector>

@@ -1,11 +1,14 @@
 #include "traces/preparation/table.hpp"
 
+#include <nlohmann/json.hpp>
+
 namespace traces {
 
-std::string spec_text(const std::string& id, const nlohmann::ordered_json& parameters) {
+std::string spec_text(const std::string& id, sim::DescribedRef parameters) {
     std::string text = id;
     char separator = '?';
-    for (const auto& [name, value] : parameters.items()) {
+    const nlohmann::ordered_json json = sim::to_json(parameters);
+    for (const auto& [name, value] : json.items()) {
         text += separator;
         text += name + '=' + (value.is_string() ? value.get<std::string>() : value.dump());
         separator = '&';

@@ -21,7 +21,7 @@ Preparation unindex_preparation();
 Preparation shuffle_preparation();
 
 /// "id?key=value&...", with every parameter.
-std::string spec_text(const std::string& id, const nlohmann::ordered_json& parameters);
+std::string spec_text(const std::string& id, sim::DescribedRef parameters);
 
 /// A row of the table; `change` makes an Applied (all but its spec) of a scene and the parameters.
 template <sim::Described P>
@@ -30,7 +30,7 @@ Preparation make_preparation(std::string id, std::string summary, Applied (*chan
             [id, change](Scene scene, const nlohmann::ordered_json& values) {
                 const P parameters = read_parameters<P>(values, id);
                 Applied applied = change(std::move(scene), parameters);
-                applied.spec = spec_text(id, sim::to_json(parameters));
+                applied.spec = spec_text(id, sim::DescribedRef(parameters));
                 return applied;
             }};
 }

@@ -57,7 +57,9 @@ float share_at(float texel_on_light, float du, float dv, float half, float z_s, 
 float search_width(const AreaLight& light, std::uint32_t resolution, float z_s, float z) {
     if (!(z_s < z) || !(z_s > 0.0F)) return 0.0F;
     const float slope = static_cast<float>(light.width) / texel_slope(light, resolution); // r l n / w
-    const float width = slope * (1.0F / z_s - 1.0F / z);
+    // 1 / z_s - 1 / z, without the difference of two rounded quotients; 1 of what is infinitely far, where z / z is not
+    // a number.
+    const float width = slope * (std::min(1.0F, (z - z_s) / z) / z_s);
     return std::min(width, 4.0F * static_cast<float>(resolution));
 }
 

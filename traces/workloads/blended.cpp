@@ -2,7 +2,7 @@
 // sorted. The ROP's read-modify-write of the colour surface is safe, because it is fixed and in primitive order.
 //
 // Source: Bavoil 2007, sections 2.1.2 and 4.3.1 (specification 004, section 1, rules 1 and 2).
-#include "pipeline/output/kbuffer_design.hpp" // names of the depth formats
+#include "pipeline/format_choice.hpp"
 #include "traces/loads.hpp"
 #include "traces/pass_graph.hpp"
 #include "traces/workloads/methods.hpp"
@@ -10,13 +10,15 @@
 #include <array>
 #include <numeric>
 
+namespace traces {
+
+enum class BlendMode : std::uint8_t { replace, over, add, least, greatest };
+
+} // namespace traces
+
 template <>
-struct sim::EnumNames<pipeline::BlendMode> {
+struct sim::EnumNames<traces::BlendMode> {
     static constexpr std::array<std::string_view, 5> names{"replace", "over", "add", "least", "greatest"};
-};
-template <>
-struct sim::EnumNames<pipeline::ColourFormat> {
-    static constexpr std::array<std::string_view, 3> names{"rgba8", "rgba16f", "rgba32f"};
 };
 
 namespace traces {
@@ -24,10 +26,10 @@ namespace traces {
 namespace {
 
 struct BlendedParams {
-    pipeline::BlendMode mode = pipeline::BlendMode::over;
+    BlendMode mode = BlendMode::over;
     float opacity = 0.5F;
     std::array<float, 3> background = {1.0F, 1.0F, 1.0F};
-    pipeline::ColourFormat colour_format = pipeline::ColourFormat::rgba8;
+    pipeline::ColourChoice colour_format = pipeline::ColourChoice::rgba8;
 
     static constexpr auto fields() {
         using P = BlendedParams;
@@ -39,17 +41,33 @@ struct BlendedParams {
 };
 static_assert(sim::fully_described<BlendedParams>);
 
+pipeline::BlendState state_of(BlendMode mode) {
+    switch (mode) {
+    case BlendMode::replace:
+        break;
+    case BlendMode::over:
+        return pipeline::blends::over();
+    case BlendMode::add:
+        return pipeline::blends::of(pipeline::blends::sum);
+    case BlendMode::least:
+        return pipeline::blends::of(pipeline::blends::least);
+    case BlendMode::greatest:
+        return pipeline::blends::of(pipeline::blends::greatest);
+    }
+    return {};
+}
+
 pipeline::Frame build(const Scene& scene, const pipeline::View& view, const BlendedParams& params) {
     pipeline::Frame frame = frame_of(scene, view);
     frame.opacity = params.opacity;
     frame.background = {params.background[0], params.background[1], params.background[2], 1.0F};
-    frame.colour_format = params.colour_format;
+    frame.colour_format = format_of(params.colour_format);
     std::vector<std::uint32_t> all(frame.draws.size());
     std::iota(all.begin(), all.end(), 0U);
 
     PassGraph graph(std::move(frame));
     graph.add_clear("clear", {colour_surface});
-    graph.add_draw("blended", {colour_surface}, {colour_surface}, std::move(all), true, params.mode);
+    graph.add_draw("blended", {colour_surface}, {colour_surface}, std::move(all), true, state_of(params.mode));
     graph.output(colour_surface);
     return graph.lower();
 }

@@ -1,7 +1,7 @@
 // The benchmark of the geometry feed: one pass with depth test LESS and depth write and fragments of constant colour.
 //
 // Source: Bavoil 2007, section 3.2 (specification 004, section 2.2, W1).
-#include "pipeline/output/kbuffer_design.hpp" // names of the depth formats
+#include "pipeline/format_choice.hpp"
 #include "traces/loads.hpp"
 #include "traces/pass_graph.hpp"
 #include "traces/workloads/methods.hpp"
@@ -25,7 +25,7 @@ namespace {
 
 struct GeometryParams {
     ReadAttributes reads = ReadAttributes::all;
-    pipeline::DepthFormat depth_format = pipeline::DepthFormat::d24;
+    pipeline::DepthChoice depth_format = pipeline::DepthChoice::d24;
 
     static constexpr auto fields() {
         using P = GeometryParams;
@@ -38,7 +38,7 @@ static_assert(sim::fully_described<GeometryParams>);
 pipeline::Frame build(const Scene& scene, const pipeline::View& view, const GeometryParams& params) {
     constexpr std::uint32_t every_attribute = (1U << pipeline::semantics) - 1;
     pipeline::Frame frame = frame_of(scene, view);
-    frame.depth_format = params.depth_format;
+    frame.depth_format = format_of(params.depth_format);
     std::vector<std::uint32_t> all(frame.draws.size());
     std::iota(all.begin(), all.end(), 0U);
 

@@ -53,7 +53,7 @@ pipeline::Frame frame_of(const Scene& scene, const pipeline::View& view);
 /// program, and the picture that its resolve makes.
 pipeline::Frame kbuffer_frame(pipeline::Frame frame, pipeline::FragmentColour colour = pipeline::FragmentColour::lit);
 
-/// The workload with `change(options, name)` applied to what it is given: as_text() or as_list().
+/// The workload with `change(options, name)` applied to what it is given: as_text(), as_list(), own_k().
 Workload taking(Workload workload, void (*change)(WorkloadOptions&, const std::string&), std::string name);
 
 /// Makes a text of a parameter that may be a number.
@@ -61,5 +61,8 @@ void as_text(WorkloadOptions& options, const std::string& name);
 
 /// Makes a list of one of a parameter that may be a number or a list of numbers.
 void as_list(WorkloadOptions& options, const std::string& name);
+
+/// Sets the parameter `k`, where it is not given, to the entries that a program of the user's has.
+void own_k(WorkloadOptions& options, const std::string& k);
 
 } // namespace traces

@@ -1,5 +1,5 @@
 // Every draw with depth test and depth write, in one pass: the plain workload, with no k-buffer.
-#include "pipeline/output/kbuffer_design.hpp" // names of the depth formats
+#include "pipeline/format_choice.hpp"
 #include "traces/loads.hpp"
 #include "traces/pass_graph.hpp"
 #include "traces/workloads/methods.hpp"
@@ -11,7 +11,7 @@ namespace traces {
 namespace {
 
 struct OpaqueParams {
-    pipeline::DepthFormat depth_format = pipeline::DepthFormat::d24;
+    pipeline::DepthChoice depth_format = pipeline::DepthChoice::d24;
 
     static constexpr auto fields() {
         return std::tuple(sim::field<&OpaqueParams::depth_format>("format of the depth surface"));
@@ -21,7 +21,7 @@ static_assert(sim::fully_described<OpaqueParams>);
 
 pipeline::Frame build(const Scene& scene, const pipeline::View& view, const OpaqueParams& params) {
     pipeline::Frame frame = frame_of(scene, view);
-    frame.depth_format = params.depth_format;
+    frame.depth_format = format_of(params.depth_format);
     std::vector<std::uint32_t> all(frame.draws.size());
     std::iota(all.begin(), all.end(), 0U);
 

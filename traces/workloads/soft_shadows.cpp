@@ -6,7 +6,7 @@
 // (design `multipass`); any design that keeps nearest depths can capture them. Positions are unprojected from a 32-bit
 // depth buffer and rounded to the format of the map, as the render target that held them was.
 #include "models/programs/nearest_k.hpp"
-#include "pipeline/functional/colour_format.hpp"
+#include "pipeline/functional/fragment_operations.hpp"
 #include "pipeline/functional/parallel.hpp"
 #include "sim/check.hpp"
 #include "traces/pass_graph.hpp"
@@ -297,9 +297,9 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const Soft
     frame.kbuffer_view = light.view(params.map_size);
     const auto picture = std::make_shared<const ShadowPicture>(light, params);
     frame.resolve = picture;
-    frame.depth_format = pipeline::DepthFormat::d32f;
+    frame.depth_format = pipeline::SurfaceFormat::d32f;
     frame.colour_format =
-        params.format == ShadowFormat::rgba16f ? pipeline::ColourFormat::rgba16f : pipeline::ColourFormat::rgba32f;
+        params.format == ShadowFormat::rgba16f ? pipeline::SurfaceFormat::rgba16f : pipeline::SurfaceFormat::rgba32f;
     frame.background = {params.background[0], params.background[1], params.background[2], 1.0F};
     // Draws of their own for each view, so that reports tell them apart.
     const auto draws = static_cast<std::uint32_t>(frame.draws.size());
@@ -349,7 +349,7 @@ std::vector<std::vector<std::string>> hard_shadows(const Scene& scene, const pip
     const glm::dvec3 forward = -glm::dvec3(glm::inverse(glm::dmat4(frame.kbuffer_view->view))[2]);
     std::vector<std::string> shared{"method=hard", "light_size=0", "layers=1", "k=2"};
     for (const char* key : {"map_size", "format", "bias", "uniform_bias", "gscale", "gmax"}) // what one layer knows
-        if (const auto value = options.values.find(key); value != options.values.end())
+        if (const auto value = options.values->find(key); value != options.values->end())
             shared.push_back(fmt::format("{}={}", key, value->is_string() ? value->get<std::string>() : value->dump()));
     std::vector<std::vector<std::string>> frames(count, shared);
     for (std::uint32_t i = 0; i < count; ++i) {

@@ -3,10 +3,9 @@
 // Source: Bavoil 2007, sections 4.4 and 6.1.1 (specification 004: workload W2, programs A6 and A11). Whether one pass
 // with a k-buffer does it or k passes of depth peeling (W3) is the design's choice, so the graph is the same for both.
 // Instead of A6 a program that composites may run: A7, multi-layer alpha blending, or one that the user wrote.
-#include "models/programs/language/user_program.hpp"
 #include "models/programs/library.hpp"
 #include "models/programs/nearest_k.hpp"
-#include "pipeline/output/kbuffer_design.hpp" // names of the depth formats
+#include "pipeline/format_choice.hpp"
 #include "sim/check.hpp"
 #include "sim/suggest.hpp"
 #include "traces/loads.hpp"
@@ -47,7 +46,7 @@ struct TransparencyParams {
     Faces faces = Faces::both;
     float opacity = 0.5F;
     std::array<float, 3> background = {1.0F, 1.0F, 1.0F};
-    pipeline::DepthFormat depth_format = pipeline::DepthFormat::d24;
+    pipeline::DepthChoice depth_format = pipeline::DepthChoice::d24;
 
     static constexpr auto fields() {
         using P = TransparencyParams;
@@ -102,7 +101,7 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const Tran
     frame.resolve = choice.picture;
     frame.opacity = params.opacity;
     frame.background = {params.background[0], params.background[1], params.background[2], 1.0F};
-    frame.depth_format = params.depth_format;
+    frame.depth_format = format_of(params.depth_format);
     Split draws = split(frame, params.transparent);
 
     const bool with_opaque = !draws.opaque.empty();
@@ -141,14 +140,6 @@ TruthMethod truth(const Scene&, const pipeline::Frame& frame, const Transparency
     if (frame.program != nullptr && !frame.needs.colours)
         throw sim::InputError("truth: workload transparency: entry: expected rgbz, the one that has colours");
     return layered_truth();
-}
-
-// A program of the user's says how many entries it has where nobody else does.
-void own_k(WorkloadOptions& options, const std::string& k) {
-    const auto program = options.values.find("program");
-    if (options.values.contains(k) || program == options.values.end() || !program->is_string()) return;
-    const auto name = program->get<std::string>();
-    if (name.ends_with(".kb")) options.values[k] = models::load_user_program(name, 0).program->k();
 }
 
 } // namespace

@@ -62,6 +62,8 @@ Workload taking(Workload workload, void (*change)(WorkloadOptions&, const std::s
     return workload;
 }
 
+std::string key_of(sim::DescribedRef parameters) { return sim::to_json(parameters).dump(); }
+
 void as_text(WorkloadOptions& options, const std::string& name) {
     const auto found = options.values->find(name);
     if (found != options.values->end() && found->is_number()) *found = found->dump();

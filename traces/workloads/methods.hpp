@@ -22,6 +22,9 @@ Workload volume_workload();
 Workload particles_workload();
 Workload soft_shadows_workload();
 
+/// What tells one set of parameters from another.
+std::string key_of(sim::DescribedRef parameters);
+
 /// A row of the table of workloads; `build` takes (scene, view, parameters), `truth` the frame in place of the view.
 template <sim::Described P>
 Workload make_workload(std::string id, std::string summary,
@@ -40,7 +43,7 @@ Workload make_workload(std::string id, std::string summary,
                                         const WorkloadOptions& options) {
             const P parameters = read_parameters<P>(options.values, place);
             TruthMethod method = truth(scene, frame, parameters);
-            if (!method.key) method.key = sim::to_json(parameters).dump();
+            if (!method.key) method.key = key_of(sim::DescribedRef(parameters));
             return method;
         };
     return workload;

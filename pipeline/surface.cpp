@@ -9,7 +9,8 @@ namespace pipeline {
 
 namespace {
 
-constexpr std::uint64_t alignment = 256; ///< of a level, in bytes
+constexpr std::uint64_t alignment = 256;   ///< of a level, in bytes
+constexpr std::uint64_t target_bytes = 16; ///< of a pixel of a k-buffer's render target
 
 std::vector<std::byte> cleared_texel(const SurfaceInfo& info) {
     std::vector<std::byte> texel(info.texel_bytes());
@@ -102,13 +103,14 @@ bool SurfaceStore::same(const SurfaceStore& other, SurfaceId surface, SurfacePla
     return std::memcmp(here, there, surfaces_[surface].texel_bytes) == 0;
 }
 
-std::uint64_t SurfaceStore::address(SurfaceId id, SurfacePlace place) const {
+std::uint64_t SurfaceStore::address(SurfaceId id, SurfacePlace place, std::uint32_t target) const {
     const Surface& surface = surfaces_[id];
     const Level& level = surface.levels[place.level];
-    const SurfaceLayout layout{level.width, level.rows, 1};
-    const std::uint64_t texel =
-        std::uint64_t{layout.block_of(place.x, place.row)} * 4 + place.row % 2 * 2 + place.x % 2;
-    return level.address + texel * surface.texel_bytes;
+    const std::uint64_t block = SurfaceLayout{level.width, level.rows, 1}.block_of(place.x, place.row);
+    const std::uint64_t pixel = place.row % 2 * 2 + place.x % 2;
+    const std::uint64_t base = level.address + block * 4 * surface.texel_bytes;
+    if (surface.info.program == nullptr) return base + pixel * surface.texel_bytes;
+    return base + (std::uint64_t{target} * 4 + pixel) * target_bytes;
 }
 
 std::uint64_t SurfaceStore::allocated(const Surface& surface) {

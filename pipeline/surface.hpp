@@ -40,9 +40,9 @@ struct SurfaceInfo {
     std::uint32_t levels = 1;
     /// What a clear stores, in the format's bytes; a k-buffer takes its program's.
     std::array<std::byte, largest_texel> cleared{};
-    std::shared_ptr<const ModifyProgram> program; ///< makes it a k-buffer
+    std::shared_ptr<const ModifyProgram> program{}; ///< makes it a k-buffer
     bool kept = false;                            ///< lives on in the next frame
-    std::optional<SurfacePicture> shown;
+    std::optional<SurfacePicture> shown{};
 
     std::uint32_t texel_bytes() const { return program ? program->bytes_per_pixel() : bytes_of(format); }
     std::uint32_t width_of(std::uint32_t level) const { return std::max(1U, width >> level); }
@@ -108,8 +108,9 @@ class SurfaceStore {
     std::uint32_t rows(SurfaceId surface, std::uint32_t level = 0) const {
         return surfaces_[surface].levels[level].rows;
     }
-    /// Byte address of a texel in GPU memory: tiles of 4x4 pixels in row order, 2x2 blocks within.
-    std::uint64_t address(SurfaceId surface, SurfacePlace place) const;
+    /// Byte address of a texel in GPU memory: tiles of 4x4 pixels in row order, 2x2 blocks within. A block of a
+    /// k-buffer holds one render target (16 bytes a pixel) after the other.
+    std::uint64_t address(SurfaceId surface, SurfacePlace place, std::uint32_t target = 0) const;
     /// Behind the last surface.
     std::uint64_t end_address() const { return end_address_; }
 

@@ -121,7 +121,7 @@ std::uint64_t SurfaceStore::allocated(const Surface& surface) {
     return pages * page_size * page_size * surface.texel_bytes;
 }
 
-SurfaceUse SurfaceStore::use(SurfaceId id) const {
+SurfaceMemory SurfaceStore::memory(SurfaceId id) const {
     const Surface& surface = surfaces_[id];
     const std::uint64_t now = allocated(surface);
     return {surface.info.nominal_bytes(), now, std::max(surface.high_water, now)};

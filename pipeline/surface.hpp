@@ -58,7 +58,7 @@ struct SurfacePlace {
 };
 
 /// What a surface takes of the memory.
-struct SurfaceUse {
+struct SurfaceMemory {
     std::uint64_t nominal = 0;    ///< bytes, were all of it written
     std::uint64_t allocated = 0;  ///< bytes of the pages that something wrote to
     std::uint64_t high_water = 0; ///< the largest value of `allocated` so far
@@ -114,7 +114,7 @@ class SurfaceStore {
     /// Behind the last surface.
     std::uint64_t end_address() const { return end_address_; }
 
-    SurfaceUse use(SurfaceId surface) const;
+    SurfaceMemory memory(SurfaceId surface) const;
 
   private:
     struct Level {

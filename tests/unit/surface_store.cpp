@@ -18,11 +18,11 @@ SurfaceInfo colour_surface(std::uint32_t width, std::uint32_t height) {
 TEST(SurfaceStore, TakesNoMemoryUntilSomethingIsWritten) {
     const std::vector<SurfaceInfo> list{colour_surface(100, 40)};
     SurfaceStore store(list);
-    EXPECT_EQ(store.use(0).nominal, 100U * 40 * 4);
-    EXPECT_EQ(store.use(0).allocated, 0U);
+    EXPECT_EQ(store.memory(0).nominal, 100U * 40 * 4);
+    EXPECT_EQ(store.memory(0).allocated, 0U);
     EXPECT_EQ(unpack_texel(SurfaceFormat::rgba8, store.read(0, {99, 39})), glm::vec4(0.0F, 1.0F, 0.0F, 1.0F));
     pack_colour(SurfaceFormat::rgba8, glm::vec4(1.0F), store.written(0, {17, 20}));
-    EXPECT_EQ(store.use(0).allocated, 16U * 16 * 4);
+    EXPECT_EQ(store.memory(0).allocated, 16U * 16 * 4);
     EXPECT_EQ(unpack_texel(SurfaceFormat::rgba8, store.read(0, {17, 20})), glm::vec4(1.0F));
     EXPECT_EQ(unpack_texel(SurfaceFormat::rgba8, store.read(0, {16, 20})), glm::vec4(0.0F, 1.0F, 0.0F, 1.0F));
 }
@@ -32,8 +32,8 @@ TEST(SurfaceStore, AClearGivesThePagesBackAndRemembersTheMost) {
     SurfaceStore store(list);
     for (std::uint32_t x = 0; x < 64; x += 16) *store.written(0, {x, 0}) = std::byte{9};
     store.clear(0);
-    EXPECT_EQ(store.use(0).allocated, 0U);
-    EXPECT_EQ(store.use(0).high_water, 4U * 16 * 16 * 4);
+    EXPECT_EQ(store.memory(0).allocated, 0U);
+    EXPECT_EQ(store.memory(0).high_water, 4U * 16 * 16 * 4);
     EXPECT_EQ(*store.read(0, {0, 0}), std::byte{0});
 }
 
@@ -43,7 +43,7 @@ TEST(SurfaceStore, ACopyHasTheSameBytesAndIsItsOwn) {
     *store.written(0, {3, 5}) = std::byte{200};
     SurfaceStore copy = store;
     EXPECT_TRUE(copy.same(store, 0, {3, 5}));
-    EXPECT_EQ(copy.use(0).allocated, store.use(0).allocated);
+    EXPECT_EQ(copy.memory(0).allocated, store.memory(0).allocated);
     *copy.written(0, {3, 5}) = std::byte{201};
     EXPECT_FALSE(copy.same(store, 0, {3, 5}));
     EXPECT_TRUE(copy.same(store, 0, {31, 31}));

@@ -118,7 +118,7 @@ struct Geometry {
     std::uint32_t triangle_count() const { return corners_of(topology) == 3 ? primitive_count() : 0; }
 };
 
-enum class Wrap : std::uint8_t { repeat, clamp, mirror };
+enum class Wrap : std::uint8_t { repeat, clamp, mirror, border };
 enum class Filter : std::uint8_t {
     nearest,
     linear,
@@ -140,6 +140,7 @@ struct Texture {
     std::vector<Level> levels;
     std::function<std::vector<std::uint8_t>()> decode; ///< the texels of level 0; throws sim::InputError
     Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
+    glm::vec4 border{0.0F}; ///< what Wrap::border reads beyond the image, linear
     Filter min_filter = Filter::linear_mip_nearest, mag_filter = Filter::linear;
     bool srgb = true; ///< texels are sRGB-encoded and decoded to linear on read
 

@@ -1,6 +1,7 @@
 #include "pipeline/functional/texture_sampler.hpp"
 
 #include "pipeline/functional/number_formats.hpp"
+#include "pipeline/functional/texture_addressing.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -10,72 +11,15 @@ namespace pipeline {
 
 namespace {
 
-using Texels = std::array<std::int32_t, 4>; ///< indices along one axis
-
-// The functions below take values, not references, and have no branches, so that compilers turn their loops over four
-// pixels into vector code.
-
-constexpr std::int32_t is_negative(float value) {
-    return static_cast<std::int32_t>(std::bit_cast<std::uint32_t>(value) >> 31U);
+/// The texel that the coordinate itself lies in; beside a border, the nearest one inside.
+std::uint64_t nearest(const AxisReads& reads, bool linear, std::size_t pixel, std::uint32_t size) {
+    const std::int32_t texel = linear && reads.share[pixel] >= 0.5F ? reads.high[pixel] : reads.low[pixel];
+    return static_cast<std::uint64_t>(std::clamp(texel, 0, static_cast<std::int32_t>(size) - 1));
 }
 
-/// value - floor(value), in [0,1]; 1 only for -0 and for negative values that round up to it.
-float fraction(float value) {
-    // Floats from 2^23 on have no fraction bits, and conversion to an integer might overflow: they count as 0.
-    const auto bits = std::bit_cast<std::int32_t>(value);
-    const std::int32_t is_small = ((bits & 0x7FFFFFFF) - 0x4B000000) >> 31;
-    const auto small = std::bit_cast<float>(bits & is_small);
-    const float rest = small - static_cast<float>(static_cast<std::int32_t>(small));
-    return rest + static_cast<float>(is_negative(rest));
-}
-
-/// Maps coordinates to [0,1].
-Lanes wrapped(Wrap wrap, Lanes values) {
-    Lanes result;
-    if (wrap == Wrap::repeat) {
-        for (std::size_t i = 0; i < 4; ++i) result[i] = fraction(values[i]);
-    } else if (wrap == Wrap::clamp) {
-        for (std::size_t i = 0; i < 4; ++i) result[i] = std::clamp(values[i], 0.0F, 1.0F);
-    } else {
-        // Twice the distance to the nearest even number.
-        for (std::size_t i = 0; i < 4; ++i) result[i] = 1.0F - std::fabs(2.0F * fraction(values[i] * 0.5F) - 1.0F);
-    }
-    return result;
-}
-
-/// What a filter reads along one axis: two texels and the share of the second, or one texel and its right neighbour.
-struct AxisReads {
-    Texels low, high;
-    Lanes share;
-};
-
-/// `before` and `after` replace the indices -1 and size.
-std::int32_t inside(std::int32_t index, std::int32_t size, std::int32_t before, std::int32_t after) {
-    const std::int32_t is_before = index >> 31, is_after = (size - 1 - index) >> 31;
-    return (index & ~(is_before | is_after)) | (before & is_before) | (after & is_after);
-}
-
-AxisReads reads_along(Wrap wrap, bool linear, Lanes wrapped, std::uint32_t texels) {
-    const auto size = static_cast<std::int32_t>(texels);
-    const std::int32_t before = wrap == Wrap::repeat ? size - 1 : 0; // a mirror repeats its last texel
-    const std::int32_t after = wrap == Wrap::repeat ? 0 : size - 1;
-    const float offset = linear ? 0.5F : 0.0F;
-    AxisReads reads;
-    for (std::size_t i = 0; i < 4; ++i) {
-        const float place = wrapped[i] * static_cast<float>(size) - offset;
-        const auto truncated = static_cast<std::int32_t>(place);
-        const float rest = place - static_cast<float>(truncated);
-        const std::int32_t floor = truncated - is_negative(rest);
-        reads.low[i] = inside(floor, size, before, after);
-        reads.high[i] = inside(floor + 1, size, before, after);
-        reads.share[i] = rest + static_cast<float>(is_negative(rest));
-    }
-    return reads;
-}
-
-/// The texel that the coordinate itself lies in.
-std::uint64_t nearest(const AxisReads& reads, bool linear, std::size_t pixel) {
-    return static_cast<std::uint64_t>(linear && reads.share[pixel] >= 0.5F ? reads.high[pixel] : reads.low[pixel]);
+bool outside(const Texture::Level& image, std::int32_t column, std::int32_t row) {
+    return column < 0 || row < 0 || column >= static_cast<std::int32_t>(image.width) ||
+           row >= static_cast<std::int32_t>(image.height);
 }
 
 /// Exactly `a` where both are equal: an image of one colour stays one, whatever the weights.
@@ -96,7 +40,8 @@ std::uint32_t line_of(const Texture::Level& level, std::uint64_t column, std::ui
 TextureSampler::TextureSampler(const Texture& texture)
     : texture_(texture),
       colour_((texture.srgb ? srgb_decode_table() : unorm8_decode_table()).data()),
-      alpha_(unorm8_decode_table().data()) {}
+      alpha_(unorm8_decode_table().data()),
+      bordered_(texture.wrap_u == Wrap::border || texture.wrap_v == Wrap::border) {}
 
 float TextureSampler::level_of_detail(const QuadTexcoords& coordinates) const {
     const auto width = static_cast<double>(texture_.levels.front().width);
@@ -136,6 +81,8 @@ std::uint32_t TextureSampler::filter(std::uint32_t level, bool linear, const Qua
     for (std::size_t i = 0; i < 4; ++i) {
         if (((pixels >> i) & 1U) == 0) continue;
         const auto at = [&](std::int32_t column, std::int32_t row) {
+            if (bordered_ && outside(image, column, row))
+                return Lanes{texture_.border.r, texture_.border.g, texture_.border.b, texture_.border.a};
             const std::size_t index = static_cast<std::size_t>(row) * image.width + static_cast<std::size_t>(column);
             return texel(image.rgba.data() + index * 4);
         };
@@ -146,7 +93,7 @@ std::uint32_t TextureSampler::filter(std::uint32_t level, bool linear, const Qua
         colours[i] = between(top, bottom, y.share[i]);
     }
     const auto first = static_cast<std::size_t>(std::countr_zero(pixels));
-    return line_of(image, nearest(x, linear, first), nearest(y, linear, first));
+    return line_of(image, nearest(x, linear, first, image.width), nearest(y, linear, first, image.height));
 }
 
 std::uint32_t TextureSampler::sample(const QuadTexcoords& coordinates, const TextureFootprint& footprint,

@@ -1,6 +1,6 @@
-// Texture sampling: level of detail, wrap modes, nearest and bilinear filters, mip levels, sRGB decoding.
+// Texture sampling: level of detail, wrap modes and borders, nearest and bilinear filters, mip levels, sRGB decoding.
 //
-// Not modelled: anisotropic filtering, borders, texel offsets, per-pixel level of detail (a quad has one).
+// Not modelled: anisotropic filtering, texel offsets, per-pixel level of detail (a quad has one).
 // Source: OpenGL 4.5, sections 8.14 and 8.15.
 #pragma once
 
@@ -55,6 +55,7 @@ class TextureSampler {
     const Texture& texture_;
     const float* colour_; ///< 256 decoded values of a colour channel
     const float* alpha_;  ///< and of alpha
+    bool bordered_;
 };
 
 } // namespace pipeline

@@ -1,0 +1,130 @@
+#include "pipeline/surface.hpp"
+
+#include "sim/check.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+namespace pipeline {
+
+namespace {
+
+constexpr std::uint64_t alignment = 256;   ///< of a level, in bytes
+constexpr std::uint64_t target_bytes = 16; ///< of a pixel of a k-buffer's render target
+
+std::vector<std::byte> cleared_texel(const SurfaceInfo& info) {
+    std::vector<std::byte> texel(info.texel_bytes());
+    if (info.program == nullptr) {
+        std::memcpy(texel.data(), info.cleared.data(), texel.size());
+        return texel;
+    }
+    std::vector<float> pixel(info.program->floats_per_pixel());
+    info.program->clear(pixel.data());
+    std::memcpy(texel.data(), pixel.data(), texel.size());
+    return texel;
+}
+
+} // namespace
+
+std::uint64_t SurfaceInfo::nominal_bytes() const {
+    std::uint64_t texels = 0;
+    for (std::uint32_t level = 0; level < levels; ++level)
+        texels += std::uint64_t{width_of(level)} * height_of(level) * planes;
+    return texels * texel_bytes();
+}
+
+SurfaceStore::SurfaceStore(std::span<const SurfaceInfo> surfaces, std::uint64_t first_address)
+    : end_address_(first_address) {
+    for (const SurfaceInfo& info : surfaces) {
+        CHECK(info.width >= 1 && info.height >= 1 && info.planes >= 1 && info.levels >= 1);
+        Surface& surface = surfaces_.emplace_back();
+        surface.info = info;
+        surface.texel_bytes = info.texel_bytes();
+        surface.cleared = cleared_texel(info);
+        for (std::uint32_t i = 0; i < info.levels; ++i) {
+            Level& level = surface.levels.emplace_back();
+            level.width = info.width_of(i);
+            level.rows = info.planes * plane_rows(info.height_of(i), info.planes);
+            level.pages_in_row = (level.width + page_size - 1) / page_size;
+            level.pages.resize(std::size_t{level.pages_in_row} * ((level.rows + page_size - 1) / page_size));
+            level.address = (end_address_ + alignment - 1) / alignment * alignment;
+            const SurfaceLayout layout{level.width, level.rows, 1};
+            end_address_ = level.address + std::uint64_t{layout.blocks()} * 4 * surface.texel_bytes;
+        }
+    }
+}
+
+SurfaceStore::SurfaceStore(const SurfaceStore& other) : end_address_(other.end_address_) {
+    for (const Surface& from : other.surfaces_) {
+        Surface& to = surfaces_.emplace_back();
+        to.info = from.info;
+        to.texel_bytes = from.texel_bytes;
+        to.cleared = from.cleared;
+        to.high_water = from.high_water;
+        for (const Level& level : from.levels) {
+            Level& copy = to.levels.emplace_back();
+            copy.width = level.width;
+            copy.rows = level.rows;
+            copy.pages_in_row = level.pages_in_row;
+            copy.address = level.address;
+            copy.pages.resize(level.pages.size());
+            const std::size_t bytes = std::size_t{page_size} * page_size * from.texel_bytes;
+            for (std::size_t page = 0; page < level.pages.size(); ++page) {
+                if (!level.pages[page]) continue;
+                copy.pages[page] = std::make_unique_for_overwrite<std::byte[]>(bytes);
+                std::memcpy(copy.pages[page].get(), level.pages[page].get(), bytes);
+            }
+        }
+    }
+}
+
+SurfaceStore& SurfaceStore::operator=(const SurfaceStore& other) {
+    if (this != &other) *this = SurfaceStore(other);
+    return *this;
+}
+
+std::unique_ptr<std::byte[]> SurfaceStore::new_page(const Surface& surface) {
+    const std::size_t texels = std::size_t{page_size} * page_size;
+    auto page = std::make_unique_for_overwrite<std::byte[]>(texels * surface.texel_bytes);
+    for (std::size_t i = 0; i < texels; ++i)
+        std::memcpy(page.get() + i * surface.texel_bytes, surface.cleared.data(), surface.texel_bytes);
+    return page;
+}
+
+void SurfaceStore::clear(SurfaceId id) {
+    Surface& surface = surfaces_[id];
+    surface.high_water = std::max(surface.high_water, allocated(surface));
+    for (Level& level : surface.levels)
+        for (std::unique_ptr<std::byte[]>& page : level.pages) page.reset();
+}
+
+bool SurfaceStore::same(const SurfaceStore& other, SurfaceId surface, SurfacePlace place) const {
+    const std::byte *here = read(surface, place), *there = other.read(surface, place);
+    return std::memcmp(here, there, surfaces_[surface].texel_bytes) == 0;
+}
+
+std::uint64_t SurfaceStore::address(SurfaceId id, SurfacePlace place, std::uint32_t target) const {
+    const Surface& surface = surfaces_[id];
+    const Level& level = surface.levels[place.level];
+    const std::uint64_t block = SurfaceLayout{level.width, level.rows, 1}.block_of(place.x, place.row);
+    const std::uint64_t pixel = place.row % 2 * 2 + place.x % 2;
+    const std::uint64_t base = level.address + block * 4 * surface.texel_bytes;
+    if (surface.info.program == nullptr) return base + pixel * surface.texel_bytes;
+    return base + (std::uint64_t{target} * 4 + pixel) * target_bytes;
+}
+
+std::uint64_t SurfaceStore::allocated(const Surface& surface) {
+    std::uint64_t pages = 0;
+    for (const Level& level : surface.levels)
+        pages += static_cast<std::uint64_t>(
+            std::count_if(level.pages.begin(), level.pages.end(), [](const auto& page) { return page != nullptr; }));
+    return pages * page_size * page_size * surface.texel_bytes;
+}
+
+SurfaceMemory SurfaceStore::memory(SurfaceId id) const {
+    const Surface& surface = surfaces_[id];
+    const std::uint64_t now = allocated(surface);
+    return {surface.info.nominal_bytes(), now, std::max(surface.high_water, now)};
+}
+
+} // namespace pipeline

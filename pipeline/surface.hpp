@@ -1,0 +1,148 @@
+// The surfaces of a frame: what passes write and later passes read.
+//
+// Modelled: formats; planes (samples, layers, cube faces, slices of a volume, slots), mip levels; the value of a clear;
+// where each texel lies in GPU memory, the same for ROPs, texture units, kernels and DRAM. A page of 16x16 pixels is
+// allocated when something first writes into it: a surface that is cleared and never drawn to costs nothing.
+// Not modelled: compression.
+#pragma once
+
+#include "pipeline/output/kbuffer.hpp"
+#include "pipeline/output/surface_layout.hpp"
+#include "pipeline/surface_format.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace pipeline {
+
+/// Index into Frame::surfaces.
+using SurfaceId = std::uint32_t;
+inline constexpr SurfaceId no_surface = ~SurfaceId{0};
+
+/// How reports make a picture of a surface.
+struct SurfacePicture {
+    std::string title;
+    float low = 0.0F, high = 1.0F; ///< what is shown as black and as white
+};
+
+struct SurfaceInfo {
+    std::string name;
+    SurfaceFormat format = SurfaceFormat::rgba8; ///< of a texel; a k-buffer's is its program's pixel
+    std::uint32_t width = 1, height = 1;         ///< of one plane of level 0
+    std::uint32_t planes = 1;
+    std::uint32_t levels = 1;
+    /// What a clear stores, in the format's bytes; a k-buffer takes its program's.
+    std::array<std::byte, largest_texel> cleared{};
+    std::shared_ptr<const ModifyProgram> program{}; ///< makes it a k-buffer
+    bool kept = false;                            ///< lives on in the next frame
+    std::optional<SurfacePicture> shown{};
+
+    std::uint32_t texel_bytes() const { return program ? program->bytes_per_pixel() : bytes_of(format); }
+    std::uint32_t width_of(std::uint32_t level) const { return std::max(1U, width >> level); }
+    std::uint32_t height_of(std::uint32_t level) const { return std::max(1U, height >> level); }
+    /// Of all planes and levels.
+    std::uint64_t nominal_bytes() const;
+};
+
+/// A texel of a surface. With several planes, `row` counts through them: plane_rows() rows from one to the next.
+struct SurfacePlace {
+    std::uint32_t x = 0, row = 0;
+    std::uint32_t level = 0;
+};
+
+/// What a surface takes of the memory.
+struct SurfaceMemory {
+    std::uint64_t nominal = 0;    ///< bytes, were all of it written
+    std::uint64_t allocated = 0;  ///< bytes of the pages that something wrote to
+    std::uint64_t high_water = 0; ///< the largest value of `allocated` so far
+};
+
+/// The bytes of all surfaces. Different pages may be written by different threads at the same time.
+class SurfaceStore {
+  public:
+    static constexpr std::uint32_t page_size = 16; ///< pixels along a side
+
+    SurfaceStore() = default;
+    /// All surfaces hold their cleared value. Addresses begin at `first_address`, each level at a multiple of 256.
+    explicit SurfaceStore(std::span<const SurfaceInfo> surfaces, std::uint64_t first_address = 0);
+    SurfaceStore(SurfaceStore&&) noexcept = default;
+    SurfaceStore& operator=(SurfaceStore&&) noexcept = default;
+    /// With the same bytes, and as many pages.
+    SurfaceStore(const SurfaceStore& other);
+    SurfaceStore& operator=(const SurfaceStore& other);
+    ~SurfaceStore() = default;
+
+    std::size_t count() const { return surfaces_.size(); }
+    const SurfaceInfo& info(SurfaceId surface) const { return surfaces_[surface].info; }
+
+    /// The texel to be written; allocates its page.
+    std::byte* written(SurfaceId surface, SurfacePlace place) {
+        const Level& level = surfaces_[surface].levels[place.level];
+        const Location at = location_of(level, place, surfaces_[surface].texel_bytes);
+        std::unique_ptr<std::byte[]>& page = surfaces_[surface].levels[place.level].pages[at.page];
+        if (!page) page = new_page(surfaces_[surface]);
+        return page.get() + at.offset;
+    }
+    /// The texel as it is, a cleared one where nothing was written.
+    const std::byte* read(SurfaceId surface, SurfacePlace place) const {
+        const Surface& of = surfaces_[surface];
+        const Level& level = of.levels[place.level];
+        const Location at = location_of(level, place, of.texel_bytes);
+        const std::byte* page = level.pages[at.page].get();
+        return page != nullptr ? page + at.offset : of.cleared.data();
+    }
+
+    /// Sets every texel to the cleared value and gives the pages back.
+    void clear(SurfaceId surface);
+    /// Whether both hold the same bytes there.
+    bool same(const SurfaceStore& other, SurfaceId surface, SurfacePlace place) const;
+
+    /// Rows of all planes of a level.
+    std::uint32_t rows(SurfaceId surface, std::uint32_t level = 0) const {
+        return surfaces_[surface].levels[level].rows;
+    }
+    /// Byte address of a texel in GPU memory: tiles of 4x4 pixels in row order, 2x2 blocks within. A block of a
+    /// k-buffer holds one render target (16 bytes a pixel) after the other.
+    std::uint64_t address(SurfaceId surface, SurfacePlace place, std::uint32_t target = 0) const;
+    /// Behind the last surface.
+    std::uint64_t end_address() const { return end_address_; }
+
+    SurfaceMemory memory(SurfaceId surface) const;
+
+  private:
+    struct Level {
+        std::uint32_t width = 0, rows = 0;
+        std::uint32_t pages_in_row = 0;
+        std::uint64_t address = 0;
+        std::vector<std::unique_ptr<std::byte[]>> pages; ///< empty pages are null
+    };
+    struct Surface {
+        SurfaceInfo info;
+        std::uint32_t texel_bytes = 0;
+        std::vector<std::byte> cleared; ///< one texel
+        std::vector<Level> levels;
+        std::uint64_t high_water = 0;
+    };
+    struct Location {
+        std::size_t page = 0, offset = 0;
+    };
+
+    static Location location_of(const Level& level, SurfacePlace place, std::uint32_t texel_bytes) {
+        const std::size_t page = std::size_t{place.row / page_size} * level.pages_in_row + place.x / page_size;
+        return {page, std::size_t{place.row % page_size * page_size + place.x % page_size} * texel_bytes};
+    }
+    static std::unique_ptr<std::byte[]> new_page(const Surface& surface);
+    static std::uint64_t allocated(const Surface& surface);
+
+    std::vector<Surface> surfaces_;
+    std::uint64_t end_address_ = 0;
+};
+
+} // namespace pipeline

@@ -17,7 +17,7 @@ std::uint64_t nearest(const AxisReads& reads, bool linear, std::size_t pixel, st
     return static_cast<std::uint64_t>(std::clamp(texel, 0, static_cast<std::int32_t>(size) - 1));
 }
 
-bool outside(const Texture::Level& image, std::int32_t column, std::int32_t row) {
+bool beyond(const Texture::Level& image, std::int32_t column, std::int32_t row) {
     return column < 0 || row < 0 || column >= static_cast<std::int32_t>(image.width) ||
            row >= static_cast<std::int32_t>(image.height);
 }
@@ -81,7 +81,7 @@ std::uint32_t TextureSampler::filter(std::uint32_t level, bool linear, const Qua
     for (std::size_t i = 0; i < 4; ++i) {
         if (((pixels >> i) & 1U) == 0) continue;
         const auto at = [&](std::int32_t column, std::int32_t row) {
-            if (bordered_ && outside(image, column, row))
+            if (bordered_ && beyond(image, column, row))
                 return Lanes{texture_.border.r, texture_.border.g, texture_.border.b, texture_.border.a};
             const std::size_t index = static_cast<std::size_t>(row) * image.width + static_cast<std::size_t>(column);
             return texel(image.rgba.data() + index * 4);

@@ -28,9 +28,10 @@ void read_member(const FieldRow& field, void* member, const Json& json, const Js
 
 nlohmann::ordered_json to_json(DescribedRef object);
 
+/// Json is a parameter so that a file may call this without the JSON library, which only whoever uses the result needs.
 template <Described S, class Json = nlohmann::ordered_json>
 Json to_json(const S& object) {
-    return to_json(DescribedRef(object));
+    return static_cast<Json (*)(DescribedRef)>(to_json)(DescribedRef(object));
 }
 
 /// Overwrites the fields that `json` names; throws InputError, its text beginning with `place`, for unknown keys and

@@ -41,7 +41,7 @@ struct SurfaceInfo {
     /// What a clear stores, in the format's bytes; a k-buffer takes its program's.
     std::array<std::byte, largest_texel> cleared{};
     std::shared_ptr<const ModifyProgram> program{}; ///< makes it a k-buffer
-    bool kept = false;                            ///< lives on in the next frame
+    bool kept = false;                              ///< lives on in the next frame
     std::optional<SurfacePicture> shown{};
 
     std::uint32_t texel_bytes() const { return program ? program->bytes_per_pixel() : bytes_of(format); }

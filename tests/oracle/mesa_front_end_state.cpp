@@ -3,7 +3,7 @@
 // Where llvmpipe does otherwise than the specification, the test says so and bounds the difference.
 #include "pipeline/functional/vertex_fetch.hpp"
 #include "sim/random.hpp"
-#include "tests/support/mesa_renderer.hpp"
+#include "tests/support/mesa_fixture.hpp"
 #include "tests/support/mesa_scenes.hpp"
 
 #include <algorithm>
@@ -19,18 +19,8 @@ using pipeline::PixelRectangle;
 using pipeline::ProvokingVertex;
 using pipeline::Topology;
 
-class MesaFrontEndState : public testing::Test {
+class MesaFrontEndState : public ExactMesaTest {
   protected:
-    static void SetUpTestSuite() { renderer_ = MesaRenderer::create(reason_).release(); }
-    static void TearDownTestSuite() {
-        delete renderer_;
-        renderer_ = nullptr;
-    }
-    void SetUp() override {
-        if (renderer_ == nullptr) GTEST_SKIP() << "no OpenGL to compare with: " << reason_;
-        if (!fuses_multiply_add()) GTEST_SKIP() << "llvmpipe rounds otherwise on processors without fused multiply-add";
-    }
-
     /// Pixels whose counts or last primitives differ.
     static std::vector<std::size_t> different_pixels(const TriangleScene& scene, std::uint64_t& fragments) {
         const OwnPicture own = count_fragments(rasterize_scene(scene));
@@ -48,9 +38,6 @@ class MesaFrontEndState : public testing::Test {
         EXPECT_LE(different_pixels(scene, fragments).size(), allowed);
         EXPECT_GT(fragments, 0U);
     }
-
-    static inline MesaRenderer* renderer_ = nullptr;
-    static inline std::string reason_;
 };
 
 TEST_F(MesaFrontEndState, ViewportsCoverTheSamePixels) {

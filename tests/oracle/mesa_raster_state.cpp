@@ -4,7 +4,7 @@
 #include "pipeline/functional/surface_texel.hpp"
 #include "pipeline/reference.hpp"
 #include "tests/support/functional_scene.hpp"
-#include "tests/support/mesa_renderer.hpp"
+#include "tests/support/mesa_fixture.hpp"
 #include "tests/support/random_states.hpp"
 
 #include <algorithm>
@@ -88,17 +88,8 @@ struct Differences {
     std::size_t coloured = 0, deep = 0, stencilled = 0;
 };
 
-class MesaRasterState : public testing::Test {
+class MesaRasterState : public MesaTest {
   protected:
-    static void SetUpTestSuite() { renderer_ = MesaRenderer::create(reason_).release(); }
-    static void TearDownTestSuite() {
-        delete renderer_;
-        renderer_ = nullptr;
-    }
-    void SetUp() override {
-        if (renderer_ == nullptr) GTEST_SKIP() << "no OpenGL to compare with: " << reason_;
-    }
-
     static void compare(Frames& frames, Differences& differences) {
         const MesaCodes mesa = renderer_->render_states(frames.scene, frames.draws, frames.colours, frames.background);
         const pipeline::ReferenceImage own = frames.reference();
@@ -116,9 +107,6 @@ class MesaRasterState : public testing::Test {
             }
         }
     }
-
-    static inline MesaRenderer* renderer_ = nullptr;
-    static inline std::string reason_;
 };
 
 TEST_F(MesaRasterState, RandomStatesGiveTheSameSurfaces) {

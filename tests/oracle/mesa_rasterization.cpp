@@ -6,7 +6,7 @@
 #include "pipeline/functional/front_end.hpp"
 #include "pipeline/functional/vertex_transform.hpp"
 #include "sim/random.hpp"
-#include "tests/support/mesa_renderer.hpp"
+#include "tests/support/mesa_fixture.hpp"
 #include "tests/support/mesa_scenes.hpp"
 
 #include <cmath>
@@ -87,18 +87,8 @@ double depth_tolerance(const TriangleScene& scene, const std::array<glm::dvec3, 
     return 2.0 + roundings * (slope_x * scene.width + slope_y * scene.height);
 }
 
-class MesaRasterization : public testing::Test {
+class MesaRasterization : public ExactMesaTest {
   protected:
-    static void SetUpTestSuite() { renderer_ = MesaRenderer::create(reason_).release(); }
-    static void TearDownTestSuite() {
-        delete renderer_;
-        renderer_ = nullptr;
-    }
-    void SetUp() override {
-        if (renderer_ == nullptr) GTEST_SKIP() << "no OpenGL to compare with: " << reason_;
-        if (!fuses_multiply_add()) GTEST_SKIP() << "llvmpipe rounds otherwise on processors without fused multiply-add";
-    }
-
     static void expect_equal_coverage(const TriangleScene& scene) {
         SCOPED_TRACE(scene.name);
         const FragmentStream stream = rasterize_scene(scene);
@@ -146,9 +136,6 @@ class MesaRasterization : public testing::Test {
                    scene.name, over_two_units, visible, ties);
         return ties;
     }
-
-    static inline MesaRenderer* renderer_ = nullptr;
-    static inline std::string reason_;
 };
 
 TEST_F(MesaRasterization, CoverageOfRandomTrianglesIsEqual) {

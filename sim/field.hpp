@@ -133,8 +133,6 @@ struct Field {
         return field;
     }
     constexpr Field range(Bound from, Bound to) const requires Number<Inner> { return at_least(from).at_most(to); }
-    /// False for a NaN where a bound is set.
-    constexpr bool contains(Bound value) const { return (!has_low || value >= low) && (!has_high || value <= high); }
 
     template <class S>
     static constexpr auto& of(S& object) {

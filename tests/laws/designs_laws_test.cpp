@@ -111,8 +111,9 @@ bool same_picture(const Case& one, const RunResult& run) {
 
 } // namespace
 
-TEST(Laws, NoHazardMeansTheReferencePictureForEverySeed) {
-    const std::uint64_t seeds = tests::repetitions(16);
+namespace {
+
+void expect_the_reference_without_hazards(std::uint64_t seeds) {
     std::set<std::uint64_t> outcomes;
     for (const Case& one : cases())
         for (const std::string& design : one.replay.designs())
@@ -134,9 +135,16 @@ TEST(Laws, NoHazardMeansTheReferencePictureForEverySeed) {
     EXPECT_GT(outcomes.size(), seeds / 4); // seeds matter
 }
 
+} // namespace
+
+TEST(Laws, NoHazardMeansTheReferencePictureForEverySeed) {
+    expect_the_reference_without_hazards(tests::repetitions(4));
+}
+TEST(LawsLong, NoHazardMeansTheReferencePictureForManySeeds) { expect_the_reference_without_hazards(16); }
+
 TEST(Laws, EveryWrongPixelIsExplainedByARecordedHazard) {
     for_every_run(jitter, [](const Case& one, const std::string& design, const Settings& settings) {
-        for (std::uint64_t seed = 1; seed <= tests::repetitions(4); ++seed) {
+        for (std::uint64_t seed = 1; seed <= tests::repetitions(2); ++seed) {
             const RunResult run = one.replay.run(design, settings, {.seed = seed});
             EXPECT_EQ(run.unexplained_pixels(), 0U);
             const auto& hazards = run.hazards;
@@ -356,7 +364,6 @@ TEST(Laws, SameInputsGiveTheSameBytes) {
             if (!runs(one, design)) continue;
             SCOPED_TRACE(describe(one, design, settings));
             const RunResult run = one.replay.run(design, join(settings, jitter), {.seed = 7});
-            EXPECT_EQ(support::difference(run, one.replay.run(design, join(settings, jitter), {.seed = 7})), "");
             EXPECT_EQ(support::difference(run, first.run(design, join(settings, jitter), {.seed = 7})), "");
             EXPECT_EQ(support::difference(run, second.run(design, join(settings, jitter), {.seed = 7})), "");
         }

@@ -59,6 +59,17 @@ const Replay& layers() {
     return replay;
 }
 
+/// A quarter of both, where settings are many.
+const Replay& small_mesh() {
+    static const Replay replay("gen:blob?triangles=1500", {.width = 32, .height = 32});
+    return replay;
+}
+
+const Replay& few_layers() {
+    static const Replay replay("gen:discs?n=50&overlap=10&width=32&height=32", {.width = 32, .height = 32});
+    return replay;
+}
+
 void expect_reference_of_both(const std::string& design, const Settings& settings) {
     SCOPED_TRACE(fmt::format("{} {}", design, fmt::join(settings, " ")));
     expect_reference(mesh(), design, settings);
@@ -89,8 +100,8 @@ TEST(EqualReference, K3_ForEveryK) {
     for (const char* entry : {"rgbz", "z"}) {
         for (const std::uint32_t k : {1U, 2U, 4U, 8U, 16U}) {
             const Replay replay(
-                "gen:discs?n=100&overlap=8&width=64&height=64",
-                {64, 64, "transparency", "auto", {fmt::format("k={}", k), fmt::format("entry={}", entry)}});
+                "gen:discs?n=50&overlap=10&width=32&height=32",
+                {32, 32, "transparency", "auto", {fmt::format("k={}", k), fmt::format("entry={}", entry)}});
             for (const std::string& design : protected_designs_of(replay)) {
                 SCOPED_TRACE(fmt::format("{} with k = {}, entry {}", design, k, entry));
                 expect_reference(replay, design);
@@ -189,17 +200,40 @@ TEST(EqualReference, K3_ExistingWithAFullFlushAfterEveryTriangle) {
     expect_reference_of_both("existing", {"existing.flush_triangles=1"});
 }
 
+namespace {
+
+const std::vector<Settings> shapes_of_machine{
+    Settings{"memory.partitions=1"},
+    Settings{"memory.partitions=3"},
+    Settings{"memory.partitions=8"},
+    Settings{"fragment.pipes=1"},
+    Settings{"fragment.pipes=13"},
+    Settings{"fragment.quads_in_flight=1"},
+    Settings{"reorder_buffer.quads=7"},
+    Settings{"rop.depth_cache_bytes=256", "rop.colour_cache_bytes=1024", "rop.kbuffer_cache_bytes=1024"},
+    Settings{"rop.queue=1", "crossbar.queue=1"},
+    Settings{"rop.units=4"},
+    Settings{"rop.units=20"},
+    Settings{"rop.fast_clear=true", "rop.clear_sectors=100"},
+    Settings{"rop.fast_clear=true"},
+    Settings{"memory.clock_mhz=800"},
+    Settings{"memory.controller.jitter_cycles=500"},
+    Settings{"texture.l1_bytes=0"},
+    Settings{"raster.quads_per_clk=16", "raster.tiles_per_clk=8"},
+    Settings{"fragment.registers=8"}};
+
+} // namespace
+
 TEST(EqualReference, K3_OnEveryShapeOfMachine) {
-    for (const Settings& shape :
-         {Settings{"memory.partitions=1"}, Settings{"memory.partitions=3"}, Settings{"memory.partitions=8"},
-          Settings{"fragment.pipes=1"}, Settings{"fragment.pipes=13"}, Settings{"fragment.quads_in_flight=1"},
-          Settings{"reorder_buffer.quads=7"},
-          Settings{"rop.depth_cache_bytes=256", "rop.colour_cache_bytes=1024", "rop.kbuffer_cache_bytes=1024"},
-          Settings{"rop.queue=1", "crossbar.queue=1"}, Settings{"rop.units=4"}, Settings{"rop.units=20"},
-          Settings{"rop.fast_clear=true", "rop.clear_sectors=100"}, Settings{"rop.fast_clear=true"},
-          Settings{"memory.clock_mhz=800"}, Settings{"memory.controller.jitter_cycles=500"},
-          Settings{"texture.l1_bytes=0"}, Settings{"raster.quads_per_clk=16", "raster.tiles_per_clk=8"},
-          Settings{"fragment.registers=8"}})
+    for (const Settings& shape : shapes_of_machine)
+        for (const std::string& design : protected_designs) {
+            SCOPED_TRACE(fmt::format("{} {}", design, fmt::join(shape, " ")));
+            expect_reference(small_mesh(), design, shape);
+            expect_reference(few_layers(), design, shape);
+        }
+}
+TEST(EqualReference, K3_LongOnEveryShapeOfMachine) {
+    for (const Settings& shape : shapes_of_machine)
         for (const std::string& design : protected_designs) expect_reference_of_both(design, shape);
 }
 

@@ -173,10 +173,10 @@ TEST(Fields, OfTetrahedraWithoutVolumeAreNumbers) {
     }
 }
 
-TEST(Fields, EveryKGivesNumbersAndEnoughOfThemTheSame) {
+TEST(Fields, AnyKGivesNumbersAndEnoughOfThemTheSame) {
     for (const char* workload : {"isosurface", "volume"}) {
         const std::vector<float> most = field("gen:tetrahedra?n=3", workload, {"k=64"}).reference.picture;
-        for (std::uint32_t k = 1; k <= 64; ++k) {
+        for (const std::uint32_t k : {1U, 2U, 3U, 5U, 8U, 13U, 15U, 16U, 17U, 33U, 63U, 64U}) {
             const Replay replay = field("gen:tetrahedra?n=3", workload, {fmt::format("k={}", k)});
             EXPECT_TRUE(is_finite(replay.reference.picture)) << workload << ' ' << k;
             EXPECT_TRUE(k < 16 || replay.reference.picture == most) << workload << ' ' << k;

@@ -8,7 +8,7 @@
 #include "pipeline/output/kbuffer.hpp"
 #include "pipeline/raster_state.hpp"
 #include "pipeline/resolve.hpp"
-#include "pipeline/surface_format.hpp"
+#include "pipeline/surface.hpp"
 
 #include <algorithm>
 #include <memory>
@@ -27,7 +27,7 @@ enum class Submission : std::uint8_t {
 };
 
 enum class PassKind : std::uint8_t {
-    clear,   ///< sets `writes` to their initial values
+    clear,   ///< sets `clears` to their cleared values
     draw,    ///< rasterizes `draws`
     resolve, ///< reads the finished surfaces and writes the picture; timed where Frame::resolve says how
 };
@@ -52,16 +52,18 @@ struct DrawPart {
 struct Pass {
     std::string name;
     PassKind kind = PassKind::draw;
-    std::vector<std::string> reads;   ///< surfaces
-    std::vector<std::string> writes;  ///< surfaces
+    std::uint32_t view = 0;           ///< 0: Frame::view; i: Frame::other_views[i - 1]
+    std::vector<SurfaceId> clears;    ///< clear passes only
     std::vector<std::uint32_t> draws; ///< indices into Frame::draws; draw passes only
     std::vector<DrawPart> parts;      ///< of those draws, in this order; empty: each draw whole
     std::vector<RasterState> states = std::vector<RasterState>(1); ///< that its draws have
     std::vector<std::uint32_t> state_of_draw; ///< index into `states`, one for each of `draws`; empty: all the first
-    bool colour = false;              ///< writes the shaded colour to the "colour" surface, blended where a state says
-    std::uint32_t colour_targets = 1; ///< written at once, all of the colour format; the first holds the colour
-    bool both_faces = false;          ///< draws triangles that face away, too
-    bool kbuffer = false;             ///< fragments go through the frame's modify program
+    /// Colour surfaces, one for each output of the shader, blended where a state says.
+    std::vector<SurfaceId> targets;
+    std::uint32_t written_targets = 1; ///< counted: colour surfaces of that format written at once
+    SurfaceId depth = no_surface;      ///< tested and written as the states say, with its stencil
+    SurfaceId kbuffer = no_surface;    ///< fragments go through its modify program
+    bool both_faces = false;           ///< draws triangles that face away, too
     /// Attributes that the vertex shader reads beside what shading needs: bits as in mask_of(Semantic).
     std::uint32_t attributes = 0;
 
@@ -74,8 +76,9 @@ struct Pass {
     bool tests_stencil() const {
         return any_state([](const RasterState& state) { return state.stencil.test; });
     }
-    /// The "depth" surface, which holds the stencil as well.
     bool uses_depth() const { return tests_depth() || writes_depth() || tests_stencil(); }
+    bool writes_colour() const { return !targets.empty(); }
+    bool runs_program() const { return kbuffer != no_surface; }
 
   private:
     template <class Predicate>
@@ -112,9 +115,9 @@ struct Frame {
     std::string workload;
     std::shared_ptr<const Resources> resources;
     std::vector<Draw> draws;
-    View view; ///< of the eye
-    /// Of the passes that fill the k-buffer, where they see the scene from elsewhere: from a light.
-    std::optional<View> kbuffer_view;
+    View view;                         ///< of the eye
+    std::vector<View> other_views;     ///< of passes that see the scene from elsewhere
+    std::vector<SurfaceInfo> surfaces; ///< that passes write
     /// Index into `draws` of the triangle that covers the screen, for the screen passes of `resolve`.
     std::optional<std::uint32_t> screen_draw;
     Submission submission = Submission::buffers;
@@ -129,18 +132,42 @@ struct Frame {
     glm::vec4 background{1.0F};
     float opacity = 0.5F; ///< uniform alpha of composited layers (A11); scales that of every blended write, too
 
-    const View& view_of_kbuffer() const { return kbuffer_view ? *kbuffer_view : view; }
-    const View& view_of(const Pass& pass) const { return pass.kbuffer ? view_of_kbuffer() : view; }
+    const View& view_of(const Pass& pass) const { return pass.view == 0 ? view : other_views.at(pass.view - 1); }
+    /// Of the passes that fill the k-buffer, which all have the same; that of the eye where there are none.
+    const View& view_of_kbuffer() const {
+        const auto pass = std::find_if(passes.begin(), passes.end(), [](const Pass& of) { return of.runs_program(); });
+        return pass == passes.end() ? view : view_of(*pass);
+    }
+    /// The k-buffer does not show what the picture shows.
+    bool kbuffer_seen_from_elsewhere() const { return &view_of_kbuffer() != &view; }
+    /// The surface that passes test depth against, write colours to or run the program on; no_surface: none.
+    SurfaceId main_depth() const {
+        return first([](const Pass& pass) { return pass.depth; });
+    }
+    SurfaceId main_colour() const {
+        return first([](const Pass& pass) { return pass.targets.empty() ? no_surface : pass.targets.front(); });
+    }
+    SurfaceId main_kbuffer() const {
+        return first([](const Pass& pass) { return pass.kbuffer; });
+    }
     /// `needs` without what this pass does not read: one that shades no colour wants colours, normals and textures only
     /// as far as an alpha test may read them.
     Needs needs_of(const Pass& pass) const {
         Needs own = needs;
-        if (pass.colour || (pass.kbuffer && program->needs_colour())) return own;
+        if (pass.writes_colour() || (pass.runs_program() && program->needs_colour())) return own;
         own.colours = own.normals = false;
         own.vertex_colours &= own.alpha_test;
         own.textures &= own.alpha_test;
         own.texcoords &= own.alpha_test;
         return own;
+    }
+
+  private:
+    template <class Of>
+    SurfaceId first(Of of) const {
+        for (const Pass& pass : passes)
+            if (const SurfaceId surface = of(pass); surface != no_surface) return surface;
+        return no_surface;
     }
 };
 

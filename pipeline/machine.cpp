@@ -4,6 +4,7 @@
 #include "pipeline/functional/fragment_operations.hpp"
 #include "pipeline/functional/screen_stream.hpp"
 #include "pipeline/functional/shader.hpp"
+#include "pipeline/functional/surface_values.hpp"
 #include "pipeline/machine_units.hpp"
 #include "pipeline/on_chip_area.hpp"
 #include "sim/described_json.hpp"
@@ -11,7 +12,6 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <utility>
 
 namespace pipeline {
 
@@ -19,7 +19,7 @@ namespace {
 
 // Fixed function always works per sample.
 bool multisampled(const Frame& frame, const Pass& pass, const KBufferPlan& plan) {
-    return frame.view.samples > 1 && (!pass.kbuffer || plan.works_per_sample());
+    return frame.view.samples > 1 && (!pass.runs_program() || plan.works_per_sample());
 }
 
 } // namespace
@@ -52,6 +52,8 @@ void Machine::build() {
     units_ = std::make_unique<Units>(gpu_, *frame_, options_);
     Units& units = *units_;
     units.simulation.set_observer(options_.observer);
+    units.surfaces = SurfaceStore(frame_->surfaces);
+    units.cleared.resize(frame_->surfaces.size());
     PassContext& pass = units.pass;
     pass.frame = frame_;
     pass.program = frame_->program.get();
@@ -136,7 +138,7 @@ std::uint64_t Machine::total_quads(const Frame& frame, std::span<const FragmentS
     for (const Pass& pass : frame.passes) {
         if (pass.kind != PassKind::draw) continue;
         const FragmentStream& stream = streams[next++];
-        quads += (pass.kbuffer ? passes : 1) *
+        quads += (pass.runs_program() ? passes : 1) *
                  (multisampled(frame, pass, plan) ? stream.groups : std::uint64_t{stream.quads.size()});
     }
     return quads;
@@ -202,28 +204,19 @@ void Machine::run_draw(const FragmentStream& stream, const Needs& needs) {
 
 void Machine::clear(const Pass& pass) {
     begin(pass.name);
-    const std::size_t places = frame_->view.places();
-    const std::uint64_t pixels = frame_->view.samples_drawn(),
-                        kbuffer_pixels = frame_->view_of_kbuffer().samples_drawn();
-    const SurfaceLayout fixed = layout_of(frame_->view), kbuffer = layout_of(frame_->view_of_kbuffer());
-    FixedSurfaces& surfaces = units_->fixed;
     std::uint64_t bytes = 0;
-    for (const std::string& surface : pass.writes) {
-        if (surface == "depth") {
-            surfaces.depth.assign(has_depth(frame_->depth_format) ? places : 0, farthest_depth(frame_->depth_format));
-            surfaces.stencil.assign(has_stencil(frame_->depth_format) ? places : 0, 0);
-            bytes += clear_surface(surfaces.depth_clear, fixed, pixels, bytes_of(frame_->depth_format));
-        }
-        if (surface == "colour") {
-            surfaces.colour.assign(places, through_format(frame_->colour_format, frame_->background));
-            bytes += clear_surface(surfaces.colour_clear, fixed, pixels, bytes_of(frame_->colour_format));
-        }
+    for (const SurfaceId surface : pass.clears) {
+        const SurfaceInfo& info = frame_->surfaces[surface];
+        const SurfaceLayout layout = layout_of(info.width, info.height, info.planes);
+        const std::uint64_t texels = std::uint64_t{info.width} * info.height * info.planes;
+        units_->surfaces.clear(surface);
+        if (info.program == nullptr)
+            bytes += clear_surface(units_->cleared[surface], layout, texels, bytes_of(info.format));
         // Peeling clears its layers one by one instead. Tile memory is cleared on chip, and stores whole sectors.
-        if (surface != "kbuffer") continue;
-        if (plan_.shader.tile_memory)
-            units_->kbuffer_clear.set(kbuffer);
+        else if (plan_.shader.tile_memory)
+            units_->kbuffer_clear.set(layout);
         else if (units_->lists || units_->kbuffer)
-            bytes += clear_surface(units_->kbuffer_clear, kbuffer, kbuffer_pixels, kbuffer_bytes());
+            bytes += clear_surface(units_->kbuffer_clear, layout, texels, kbuffer_bytes());
     }
     if (bytes != 0) stream_surface(0, bytes);
     end();
@@ -251,60 +244,74 @@ void Machine::resolve_cleared(ClearBits& bits, std::uint32_t pixel_bytes) {
     bits.reset();
 }
 
-void Machine::draw(const Pass& pass, const FragmentStream& stream) {
+void Machine::bind(const Pass& pass) {
     PassContext& context = units_->pass;
-    FixedSurfaces& fixed = units_->fixed;
-    const std::size_t places = frame_->view.places();
+    const auto format_of = [this](SurfaceId surface, SurfaceFormat otherwise) {
+        return surface == no_surface ? otherwise : frame_->surfaces[surface].format;
+    };
+    const SurfaceId colour = pass.targets.empty() ? no_surface : pass.targets.front();
+    units_->fixed = {};
+    units_->fixed.surfaces = &units_->surfaces;
+    units_->fixed.depth = pass.depth;
+    units_->fixed.targets = pass.targets;
+    if (pass.depth != no_surface) units_->fixed.depth_clear = &units_->cleared[pass.depth];
+    if (colour != no_surface) units_->fixed.colour_clear = &units_->cleared[colour];
     context.layout = layout_of(frame_->view_of(pass));
     context.multisampled = multisampled(*frame_, pass, plan_);
-    fixed.winner.resize(places, ~QuadId{0});
-    if (pass.uses_depth()) {
-        fixed.depth.resize(has_depth(frame_->depth_format) ? places : 0, farthest_depth(frame_->depth_format));
-        fixed.stencil.resize(has_stencil(frame_->depth_format) ? places : 0);
-    }
-    if (pass.colour) fixed.colour.resize(places, through_format(frame_->colour_format, frame_->background));
     context.states = context.read_only_states = DrawStates(pass, frame_->draws.size());
-    context.colour_format = frame_->colour_format;
-    context.colour_write = pass.colour;
-    context.colour_bytes = bytes_of(frame_->colour_format) * pass.colour_targets;
-    context.depth_format = frame_->depth_format;
-    context.read_only_format = frame_->depth_format;
-    context.depth_bytes = bytes_of(frame_->depth_format);
+    context.colour_write = pass.writes_colour();
+    context.colour_format = format_of(colour, SurfaceFormat::rgba8);
+    context.colour_bytes = bytes_of(context.colour_format) * pass.written_targets;
+    context.depth_format = format_of(pass.depth, SurfaceFormat::d24);
+    context.depth_bytes = bytes_of(context.depth_format);
     context.behind = nullptr;
-    if (!pass.kbuffer) {
+    context.read_only_surfaces = &units_->surfaces;
+    context.read_only_depth = pass.runs_program() && pass.tests_depth() ? pass.depth : no_surface;
+}
+
+void Machine::draw(const Pass& pass, const FragmentStream& stream) {
+    bind(pass);
+    PassContext& context = units_->pass;
+    if (!pass.runs_program()) {
         context.end = FragmentEnd::depth_colour;
-        context.read_only_depth = nullptr;
         begin(pass.name);
         run_draw(stream, frame_->needs_of(pass));
         end();
         return;
     }
     CHECK_MSG(!pass.writes_depth() && !pass.tests_stencil(), "a k-buffer pass neither writes depth nor tests stencil");
-    if (plan_.site == UpdateSite::passes) return draw_layers(pass, stream);
-    if (plan_.site == UpdateSite::lists) return draw_lists(pass, stream);
-    context.read_only_depth = pass.tests_depth() ? &fixed.depth : nullptr;
+    if (plan_.site == UpdateSite::passes || plan_.site == UpdateSite::lists) {
+        plan_.site == UpdateSite::passes ? draw_layers(pass, stream) : draw_lists(pass, stream);
+        store_entries(units_->surfaces, pass.kbuffer, layers_);
+        return;
+    }
     context.end = plan_.site == UpdateSite::blender ? FragmentEnd::kbuffer_blend : FragmentEnd::kbuffer_store;
     begin(pass.name);
     if (context.end == FragmentEnd::kbuffer_store && !plan_.shader.tile_memory)
         resolve_cleared(units_->kbuffer_clear, kbuffer_bytes());
     run_draw(stream, frame_->needs_of(pass));
     end();
+    store_entries(units_->surfaces, pass.kbuffer, units_->kbuffer->image());
 }
 
 // What computes the picture, where the workload says how.
 void Machine::resolve() {
     if (!frame_->screen_draw || !frame_->resolve) return;
-    const std::vector<float> kbuffer = kbuffer_image(), colour = colour_surface(), depth = depth_surface();
-    const auto passes = with_drained(*frame_, {kbuffer, colour, depth}, [this](const FinishedSurfaces& surfaces) {
-        return frame_->resolve->screen_passes(*frame_, surfaces);
+    const SurfaceStore& surfaces = units_->surfaces;
+    const std::vector<float> kbuffer = entries_of(surfaces, frame_->main_kbuffer()),
+                             colour = colours_of(surfaces, frame_->main_colour()),
+                             depth = depths_of(surfaces, frame_->main_depth());
+    const auto passes = with_drained(*frame_, {kbuffer, colour, depth}, [this](const FinishedSurfaces& finished) {
+        return frame_->resolve->screen_passes(*frame_, finished);
     });
-    FixedSurfaces& fixed = units_->fixed;
-    ClearBits& heads_or_entries = units_->kbuffer_clear;
-    if (!passes.empty() && heads_or_entries.left() + fixed.depth_clear.left() + fixed.colour_clear.left() != 0) {
+    std::uint64_t left = units_->kbuffer_clear.left();
+    for (const ClearBits& bits : units_->cleared) left += bits.left();
+    if (!passes.empty() && left != 0) {
         begin("resolve of cleared sectors");
-        if (frame_->program != nullptr) resolve_cleared(heads_or_entries, kbuffer_bytes());
-        resolve_cleared(fixed.depth_clear, bytes_of(frame_->depth_format));
-        resolve_cleared(fixed.colour_clear, bytes_of(frame_->colour_format));
+        if (frame_->program != nullptr) resolve_cleared(units_->kbuffer_clear, kbuffer_bytes());
+        for (SurfaceId surface = 0; surface < units_->cleared.size(); ++surface)
+            if (frame_->surfaces[surface].program == nullptr)
+                resolve_cleared(units_->cleared[surface], bytes_of(frame_->surfaces[surface].format));
         end();
     }
     for (const ScreenPass& pass : passes) screen(pass, *frame_->screen_draw);
@@ -313,13 +320,12 @@ void Machine::resolve() {
 void Machine::screen(const ScreenPass& pass, std::uint32_t triangle) {
     PassContext& context = units_->pass;
     const FragmentStream stream = screen_stream(pass.width, pass.height, triangle);
-    units_->drawn = std::exchange(units_->fixed, {});
-    units_->fixed.winner.assign(std::size_t{pass.width} * pass.height, ~QuadId{0});
+    units_->fixed = {}; // its values are the workload's
     context.layout = layout_of(pass.width, pass.height);
     context.end = FragmentEnd::depth_colour;
     context.states = DrawStates();
-    context.read_only_depth = nullptr;
-    context.colour_write = true; // its values are the workload's
+    context.read_only_depth = no_surface;
+    context.colour_write = true;
     context.colour_bytes = pass.written_bytes;
     context.multisampled = false;
     context.screen = &pass;
@@ -327,7 +333,6 @@ void Machine::screen(const ScreenPass& pass, std::uint32_t triangle) {
     run_draw(stream, {});
     end();
     context.screen = nullptr;
-    units_->fixed = std::move(units_->drawn);
 }
 
 RunResult Machine::run(const ReferenceImage& reference) {

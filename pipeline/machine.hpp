@@ -61,6 +61,8 @@ class Machine {
     void end();
     void clear(const Pass& pass);
     void draw(const Pass& pass, const FragmentStream& stream);
+    /// The surfaces of a pass become those of the ROPs.
+    void bind(const Pass& pass);
     void resolve();
     /// @param triangle the draw whose triangle covers the screen, or stands for one that does
     void screen(const ScreenPass& pass, std::uint32_t triangle);
@@ -91,8 +93,6 @@ class Machine {
         return {width, height, gpu_.rop.groups(), samples};
     }
     SurfaceLayout layout_of(const View& view) const { return layout_of(view.width, view.height, view.samples); }
-    std::vector<float> kbuffer_image() const;
-    std::vector<float> depth_surface() const;
     void list_units(RunResult& result) const;
     void collect_pixels(RunResult& result, const ReferenceImage& reference) const;
     void judge_pixels(RunResult& result, const ReferenceImage& reference, std::vector<std::uint8_t> wrong,
@@ -105,7 +105,6 @@ class Machine {
     void collect_counters(RunResult& result) const;
     void collect_vertex_caches(RunResult& result) const;
     void collect_draw(RunResult& result, std::uint32_t draw) const;
-    std::vector<float> colour_surface() const;
     bool uses_depth() const;
     bool uses_colour() const;
 

@@ -1,14 +1,36 @@
 // k-buffer passes of designs that do not modify pixels in place: several geometry passes with fixed-function tests, and
 // lists of fragments that a later pass puts into the entries.
+#include "pipeline/functional/surface_texel.hpp"
 #include "pipeline/list_sort.hpp"
 #include "pipeline/machine_units.hpp"
 
 #include <algorithm>
 #include <array>
 #include <fmt/format.h>
-#include <utility>
 
 namespace pipeline {
+
+namespace {
+
+/// The depths of a layer on its way to the k-buffer. Its colours are those of the fragments that won.
+SurfaceInfo layer_depths(const SurfaceLayout& layout, SurfaceFormat depth) {
+    SurfaceInfo depths{
+        .name = "layer", .format = depth, .width = layout.width, .height = layout.height, .planes = layout.samples};
+    pack_depth_stencil(depth, {farthest_depth(depth), 0}, depths.cleared.data());
+    return depths;
+}
+
+std::vector<DepthCode> depth_codes_of(const SurfaceStore& surfaces, SurfaceId surface) {
+    const SurfaceInfo& info = surfaces.info(surface);
+    std::vector<DepthCode> codes;
+    codes.reserve(surfaces.places(surface));
+    for (std::uint32_t row = 0; row < surfaces.rows(surface); ++row)
+        for (std::uint32_t x = 0; x < info.width; ++x)
+            codes.push_back(unpack_depth_stencil(info.format, surfaces.read(surface, {x, row, 0})).depth);
+    return codes;
+}
+
+} // namespace
 
 std::uint32_t Machine::geometry_passes(const KBufferPlan& plan, const ModifyProgram& program) {
     if (plan.site == UpdateSite::lists) return plan.lists.passes;
@@ -23,8 +45,15 @@ void Machine::draw_layers(const Pass& pass, const FragmentStream& stream) {
     const std::size_t pixels = frame_->view_of_kbuffer().places();
     const std::uint64_t drawn = frame_->view_of_kbuffer().samples_drawn();
     const bool both_ends = plan_.passes.capture == PassCapture::nearest_farthest;
-    units_->drawn = std::exchange(units_->fixed, {});
-    context.read_only_depth = pass.tests_depth() ? &units_->drawn.depth : nullptr;
+    const SurfaceInfo depths = layer_depths(context.layout, plan_.passes.depth_format);
+    SurfaceStore layer(std::span(&depths, 1));
+    ClearBits depth_clear, colour_clear;
+    FixedSurfaces& fixed = units_->fixed;
+    fixed = {};
+    fixed.surfaces = &layer;
+    fixed.depth = 0;
+    fixed.depth_clear = &depth_clear;
+    fixed.colour_clear = &colour_clear;
     context.end = FragmentEnd::depth_colour;
     RasterState nearest;
     nearest.depth.test = nearest.depth.write = true;
@@ -43,15 +72,14 @@ void Machine::draw_layers(const Pass& pass, const FragmentStream& stream) {
     far_layers.reserve(passes);
     for (std::uint32_t i = 0; i < passes; ++i) {
         begin(fmt::format("{} layer {}", pass.name, i));
-        units_->fixed.depth.assign(pixels, farthest_depth(context.depth_format));
-        units_->fixed.winner.assign(pixels, ~QuadId{0});
+        layer.clear(0);
+        fixed.winner.assign(pixels, ~QuadId{0});
         if (both_ends) {
-            units_->fixed.far_depth.assign(pixels, 0);
-            units_->fixed.far_winner.assign(pixels, ~QuadId{0});
+            fixed.far_depth.assign(pixels, 0);
+            fixed.far_winner.assign(pixels, ~QuadId{0});
         }
-        std::uint64_t clear = clear_surface(units_->fixed.depth_clear, context.layout, drawn, context.depth_bytes);
-        if (context.colour_write)
-            clear += clear_surface(units_->fixed.colour_clear, context.layout, drawn, context.colour_bytes);
+        std::uint64_t clear = clear_surface(depth_clear, context.layout, drawn, context.depth_bytes);
+        if (context.colour_write) clear += clear_surface(colour_clear, context.layout, drawn, context.colour_bytes);
         if (clear != 0) stream_surface(0, clear);
         if (plan_.passes.capture == PassCapture::range) {
             context.range = program.range(i);
@@ -61,15 +89,14 @@ void Machine::draw_layers(const Pass& pass, const FragmentStream& stream) {
         }
         run_draw(stream, frame_->needs_of(pass));
         if (both_ends) {
-            near_layers.push_back({units_->fixed.depth, units_->fixed.winner});
-            far_layers.push_back({units_->fixed.far_depth, units_->fixed.far_winner});
+            near_layers.push_back({depth_codes_of(layer, 0), fixed.winner});
+            far_layers.push_back({fixed.far_depth, fixed.far_winner});
         } else {
-            for (std::size_t pixel = 0; pixel < pixels; ++pixel)
-                keep_entry(pixel, i, units_->fixed.winner[pixel], stream);
-            near_layers = {{units_->fixed.depth, units_->fixed.winner}};
+            for (std::size_t pixel = 0; pixel < pixels; ++pixel) keep_entry(pixel, i, fixed.winner[pixel], stream);
+            near_layers = {{depth_codes_of(layer, 0), fixed.winner}};
         }
         const bool read_again = i + 1 < passes && plan_.passes.capture != PassCapture::range;
-        if (read_again) resolve_cleared(units_->fixed.depth_clear, context.depth_bytes);
+        if (read_again) resolve_cleared(depth_clear, context.depth_bytes);
         if (read_again) stream_surface(drawn * context.depth_bytes, drawn * context.depth_bytes);
         end();
     }
@@ -78,7 +105,7 @@ void Machine::draw_layers(const Pass& pass, const FragmentStream& stream) {
     context.behind = context.before = nullptr;
     context.range.reset();
     context.farthest = false;
-    units_->fixed = std::move(units_->drawn);
+    fixed = {};
 }
 
 void Machine::clear_layers() {
@@ -120,7 +147,6 @@ void Machine::draw_lists(const Pass& pass, const FragmentStream& stream) {
     PassContext& context = units_->pass;
     const ListsSite& site = plan_.lists;
     const std::uint64_t pixels = frame_->view_of_kbuffer().samples_drawn();
-    context.read_only_depth = pass.tests_depth() ? &units_->fixed.depth : nullptr;
     context.end = FragmentEnd::kbuffer_list;
     for (std::uint32_t i = 0; i < site.passes; ++i) {
         begin(site.passes == 1 ? pass.name : fmt::format("{} pass {}", pass.name, i));

@@ -1,5 +1,6 @@
 // What a machine says after a run: pixels against the reference, hazards, counters by stage, pass and draw.
 #include "pipeline/functional/sample_pattern.hpp"
+#include "pipeline/functional/surface_values.hpp"
 #include "pipeline/image_difference.hpp"
 #include "pipeline/machine_units.hpp"
 #include "pipeline/memory/unit_report.hpp"
@@ -126,19 +127,21 @@ void Machine::list_units(RunResult& result) const {
 void Machine::collect_pixels(RunResult& result, const ReferenceImage& reference) const {
     std::vector<std::uint8_t> wrong, tied;
     if (frame_->needs.kbuffer) {
-        result.kbuffer = kbuffer_image();
+        result.kbuffer = entries_of(units_->surfaces, frame_->main_kbuffer());
         KBufferDifference difference = compare_kbuffers(*frame_->program, result.kbuffer, reference.kbuffer);
         wrong = std::move(difference.wrong);
         result.lost_fragments = difference.lost_fragments;
         tied = std::move(difference.tied);
         result.layers = std::move(difference.layers);
     }
-    if (frame_->needs.colour_surface) result.colour = colour_surface();
-    if (frame_->needs.depth) result.depth = depth_surface();
-    if (frame_->needs.depth) result.stencil = units_->fixed.stencil;
+    const SurfaceStore& surfaces = units_->surfaces;
+    result.colour = colours_of(surfaces, frame_->main_colour());
+    result.depth = depths_of(surfaces, frame_->main_depth());
+    result.stencil = stencils_of(surfaces, frame_->main_depth());
+    for (SurfaceId i = 0; i < surfaces.count(); ++i) result.surfaces.push_back({surfaces.info(i), surfaces.memory(i)});
     const std::vector<std::uint8_t> fixed = wrong_fixed_places(result, reference);
     wrong.resize(frame_->view_of_kbuffer().places());
-    if (frame_->kbuffer_view) // surfaces of other pixels, which nothing explains
+    if (frame_->kbuffer_seen_from_elsewhere()) // surfaces of other pixels, which nothing explains
         result.wrong_pixels = result.wrong_because.unexplained =
             static_cast<std::uint64_t>(std::count(fixed.begin(), fixed.end(), 1));
     else
@@ -148,7 +151,7 @@ void Machine::collect_pixels(RunResult& result, const ReferenceImage& reference)
 
 std::vector<std::uint8_t> Machine::wrong_fixed_places(const RunResult& result, const ReferenceImage& reference) const {
     std::vector<std::uint8_t> wrong(frame_->view.places());
-    if (frame_->needs.colour_surface) {
+    if (!result.colour.empty()) {
         CHECK(result.colour.size() == reference.colour.size());
         for (std::size_t at = 0; at < result.colour.size(); ++at)
             if (std::bit_cast<std::uint32_t>(result.colour[at]) != std::bit_cast<std::uint32_t>(reference.colour[at]))
@@ -188,7 +191,7 @@ void Machine::explain_peeling(std::vector<std::uint8_t>& facts) const {
     if (places.empty()) return;
     std::size_t stream = 0;
     for (const Pass& pass : frame_->passes) {
-        if (pass.kbuffer) break;
+        if (pass.runs_program()) break;
         stream += pass.kind == PassKind::draw ? 1 : 0;
     }
     const std::vector<PeelLoss> losses = peel_losses(plan_.passes, streams_[stream], places);
@@ -232,23 +235,6 @@ bool Machine::explained(std::size_t place) const {
     const std::size_t width = frame_->view_of_kbuffer().width;
     const auto x = static_cast<std::uint32_t>(place % width), y = static_cast<std::uint32_t>(place / width);
     return units_->kbuffer && units_->history->classes(units_->pass.layout.block_of(x, y), y % 2 * 2 + x % 2) != 0;
-}
-
-std::vector<float> Machine::kbuffer_image() const { return units_->kbuffer ? units_->kbuffer->image() : layers_; }
-
-std::vector<float> Machine::depth_surface() const {
-    std::vector<float> depths;
-    depths.reserve(units_->fixed.depth.size());
-    for (const DepthCode code : units_->fixed.depth) depths.push_back(depth_value(frame_->depth_format, code));
-    return depths;
-}
-
-std::vector<float> Machine::colour_surface() const {
-    std::vector<float> image;
-    image.reserve(units_->fixed.colour.size() * 4);
-    for (const glm::vec4& colour : units_->fixed.colour)
-        image.insert(image.end(), {colour.r, colour.g, colour.b, colour.a});
-    return image;
 }
 
 std::vector<HazardLedger::Access> Machine::accesses() const {

@@ -59,9 +59,10 @@ struct Machine::Units {
     std::optional<StoreHistory> history;
     std::optional<QuadPayloads> payloads;
     std::optional<FragmentLists> lists;
-    ClearBits kbuffer_clear; ///< of the k-buffer, or of the heads of lists
+    ClearBits kbuffer_clear;        ///< of the k-buffer, or of the heads of lists
+    SurfaceStore surfaces;          ///< of the frame
+    std::vector<ClearBits> cleared; ///< of each of them
     FixedSurfaces fixed;
-    FixedSurfaces drawn; ///< result of the earlier passes, while a k-buffer pass peels its layers
 
     MemorySystem memory;
     GeometryFront front;

@@ -6,6 +6,7 @@
 #include "pipeline/functional/parallel.hpp"
 #include "pipeline/functional/pixel_lists.hpp"
 #include "pipeline/functional/surface_texel.hpp"
+#include "pipeline/functional/surface_values.hpp"
 #include "sim/check.hpp"
 
 #include <algorithm>
@@ -15,20 +16,6 @@
 namespace pipeline {
 
 namespace {
-
-/// The surfaces in the form they have in memory.
-struct Surfaces {
-    std::vector<float> kbuffer;
-    std::vector<DepthCode> depth;
-    std::vector<std::uint8_t> stencil;
-    std::vector<float> colour;
-
-    std::vector<float> depth_values(SurfaceFormat format) const {
-        std::vector<float> values(depth.size());
-        for (std::size_t i = 0; i < values.size(); ++i) values[i] = depth_value(format, depth[i]);
-        return values;
-    }
-};
 
 /// Sums over all fragments of the k-buffer passes.
 struct Counts {
@@ -41,11 +28,12 @@ struct PendingStore {
     std::vector<float> entries;
 };
 
-/// Runs the fragments of one draw pass, pixel by pixel.
+/// Runs the fragments of one draw pass, pixel by pixel: a pixel's depth, stencil and colours are in hand while its
+/// fragments come.
 class PassRunner {
   public:
     PassRunner(const Frame& frame, const Pass& pass, const DrawStates& states, const FragmentStream& stream,
-               QuadId delay, Surfaces& surfaces, ReferenceImage& image, Counts& counts)
+               QuadId delay, SurfaceStore& surfaces, ReferenceImage& image, Counts& counts)
         : frame_(frame),
           pass_(pass),
           states_(states),
@@ -54,18 +42,25 @@ class PassRunner {
           surfaces_(surfaces),
           image_(image),
           counts_(counts),
-          floats_(pass.kbuffer ? frame.program->floats_per_pixel() : 0),
+          floats_(pass.runs_program() ? frame.program->floats_per_pixel() : 0),
           uses_depth_(pass.uses_depth()),
-          counts_complexity_(pass.kbuffer || frame.program == nullptr) {}
+          counts_complexity_(pass.runs_program() || frame.program == nullptr) {
+        if (uses_depth_) depth_format_ = surfaces.info(pass.depth).format;
+        for (const SurfaceId target : pass.targets) formats_.push_back(surfaces.info(target).format);
+        colours_.resize(formats_.size());
+    }
 
     /// Runs the quads of one pixel in raster order.
-    void run_pixel(std::uint32_t x, std::uint32_t y, std::span<const QuadId> quads) {
-        pixel_ = std::size_t{y} * stream_.width + x;
-        lane_ = (y & 1U) * 2 + (x & 1U);
+    void run_pixel(std::uint32_t x, std::uint32_t row, std::span<const QuadId> quads) {
+        place_ = {x, row, 0};
+        lane_ = (row & 1U) * 2 + (x & 1U);
+        pixel_ = std::size_t{row} * stream_.width + x;
         head_ = tail_ = 0;
         missed_here_ = false;
+        take();
         for (const QuadId quad : quads) run_fragment(quad);
-        if (delay_ > 1 && pass_.kbuffer) store_until(~std::uint64_t{0});
+        put();
+        if (delay_ > 1 && pass_.runs_program()) store_until(~std::uint64_t{0});
         if (missed_here_) ++missed_pixels_;
     }
 
@@ -76,46 +71,59 @@ class PassRunner {
     }
 
   private:
+    void take() {
+        if (uses_depth_) depth_ = before_ = unpack_depth_stencil(depth_format_, surfaces_.read(pass_.depth, place_));
+        for (std::size_t i = 0; i < colours_.size(); ++i)
+            colours_[i] = unpack_texel(formats_[i], surfaces_.read(pass_.targets[i], place_));
+        coloured_ = false;
+        entries_ = nullptr;
+    }
+    void put() {
+        if (uses_depth_ && depth_ != before_)
+            pack_depth_stencil(depth_format_, depth_, surfaces_.written(pass_.depth, place_));
+        for (std::size_t i = 0; coloured_ && i < colours_.size(); ++i)
+            pack_colour(formats_[i], colours_[i], surfaces_.written(pass_.targets[i], place_));
+    }
+
     void run_fragment(QuadId quad) {
         const RasterState& state = states_.of(stream_, quad);
         if (!tests_pass(state, quad)) return;
         if (counts_complexity_) ++image_.depth_complexity[pixel_];
-        if (pass_.colour) store_colour(state, quad);
-        if (pass_.kbuffer) insert(quad);
+        for (std::size_t i = 0; i < colours_.size(); ++i) store_colour(state, quad, i);
+        if (pass_.runs_program()) insert(quad);
     }
 
     /// A failed fragment still counts in the depth complexity of frames without k-buffer.
     bool tests_pass(const RasterState& state, QuadId quad) {
         if (!uses_depth_) return true;
-        const DepthCode incoming = depth_code(frame_.depth_format, stream_.depths[quad][lane_]);
+        const DepthCode incoming = depth_code(depth_format_, stream_.depths[quad][lane_]);
         const FragmentTest test = test_fragment(state, shows_front(state, stream_, quad), incoming,
-                                                surfaces_.depth.empty() ? nullptr : &surfaces_.depth[pixel_],
-                                                surfaces_.stencil.empty() ? nullptr : &surfaces_.stencil[pixel_]);
-        if (!test.passed() && !pass_.kbuffer && counts_complexity_) ++image_.depth_complexity[pixel_];
+                                                has_depth(depth_format_) ? &depth_.depth : nullptr,
+                                                has_stencil(depth_format_) ? &depth_.stencil : nullptr);
+        if (!test.passed() && !pass_.runs_program() && counts_complexity_) ++image_.depth_complexity[pixel_];
         return test.passed();
     }
 
-    void store_colour(const RasterState& state, QuadId quad) {
-        if (state.write_mask[0] == 0) return;
-        float* stored = surfaces_.colour.data() + pixel_ * 4;
+    void store_colour(const RasterState& state, QuadId quad, std::size_t target) {
+        if (state.write_mask[target] == 0) return;
         glm::vec4 source = stream_.colours[quad][lane_];
-        if (state.blend[0].enabled) source.a *= frame_.opacity;
-        const glm::vec4 colour = write_colour(frame_.colour_format, state.blend[0], state.write_mask[0], source,
-                                              {stored[0], stored[1], stored[2], stored[3]});
-        for (int i = 0; i < 4; ++i) stored[i] = colour[i];
+        if (state.blend[target].enabled) source.a *= frame_.opacity;
+        colours_[target] =
+            write_colour(formats_[target], state.blend[target], state.write_mask[target], source, colours_[target]);
+        coloured_ = true;
     }
 
     void insert(QuadId quad) {
         frame_.program->make_entry(stream_.fragment(quad, lane_), entry_.data());
-        float* stored = surfaces_.kbuffer.data() + pixel_ * floats_;
+        if (entries_ == nullptr) entries_ = surfaces_.written_entries(pass_.kbuffer, place_);
         if (delay_ == 1) {
-            if (frame_.program->insert(stored, entry_.data())) ++accepted_;
+            if (frame_.program->insert(entries_, entry_.data())) ++accepted_;
         } else {
-            insert_delayed(quad, stored);
+            insert_delayed(quad);
         }
     }
 
-    void insert_delayed(QuadId quad, const float* stored) {
+    void insert_delayed(QuadId quad) {
         store_until(quad >= delay_ ? std::uint64_t{quad} - delay_ + 1 : 0);
         if (head_ != tail_) {
             ++missed_reads_;
@@ -124,15 +132,14 @@ class PassRunner {
         if (tail_ == pending_.size()) pending_.emplace_back();
         PendingStore& store = pending_[tail_++];
         store.quad = quad;
-        store.entries.assign(stored, stored + floats_);
+        store.entries.assign(entries_, entries_ + floats_);
         if (frame_.program->insert(store.entries.data(), entry_.data())) ++accepted_;
     }
 
     /// Applies the pending stores of quads below `end`.
     void store_until(std::uint64_t end) {
         while (head_ != tail_ && pending_[head_].quad < end) {
-            std::copy(pending_[head_].entries.begin(), pending_[head_].entries.end(),
-                      surfaces_.kbuffer.begin() + static_cast<std::ptrdiff_t>(pixel_ * floats_));
+            std::copy(pending_[head_].entries.begin(), pending_[head_].entries.end(), entries_);
             ++head_;
         }
         if (head_ == tail_) head_ = tail_ = 0;
@@ -143,15 +150,22 @@ class PassRunner {
     const DrawStates& states_;
     const FragmentStream& stream_;
     QuadId delay_;
-    Surfaces& surfaces_;
+    SurfaceStore& surfaces_;
     ReferenceImage& image_;
     Counts& counts_;
     std::size_t floats_;
     bool uses_depth_;
     bool counts_complexity_;
+    SurfaceFormat depth_format_ = SurfaceFormat::d24;
+    std::vector<SurfaceFormat> formats_; ///< of the targets
 
-    std::size_t pixel_ = 0;
+    SurfacePlace place_;
+    std::size_t pixel_ = 0; ///< number of the place
     std::size_t lane_ = 0;
+    DepthStencil depth_, before_;
+    std::vector<glm::vec4> colours_; ///< of the targets
+    bool coloured_ = false;
+    float* entries_ = nullptr; ///< of the k-buffer; null until something comes
     std::array<float, largest_entry> entry_{};
     std::vector<PendingStore> pending_; ///< of the current pixel: [head_, tail_), oldest first
     std::size_t head_ = 0, tail_ = 0;
@@ -162,8 +176,8 @@ class PassRunner {
 class Reference {
   public:
     Reference(const Frame& frame, std::span<const FragmentStream> streams, QuadId delay, unsigned threads)
-        : frame_(frame), streams_(streams), delay_(delay), threads_(threads) {
-        allocate();
+        : frame_(frame), streams_(streams), delay_(delay), threads_(threads), surfaces_(frame.surfaces) {
+        image_.depth_complexity.resize(frame_.view_of_kbuffer().places());
         for (const Pass& pass : frame.passes) run(pass);
         finish();
     }
@@ -171,48 +185,18 @@ class Reference {
     ReferenceImage take() { return std::move(image_); }
 
   private:
-    void allocate() {
-        const auto any = [&](auto member) { return std::any_of(frame_.passes.begin(), frame_.passes.end(), member); };
-        image_.depth_complexity.resize(frame_.view_of_kbuffer().places());
-        if (any([](const Pass& pass) { return pass.uses_depth(); })) {
-            surfaces_.depth.resize(has_depth(frame_.depth_format) ? frame_.view.places() : 0);
-            surfaces_.stencil.resize(has_stencil(frame_.depth_format) ? frame_.view.places() : 0);
-        }
-        if (any([](const Pass& pass) { return pass.colour; })) surfaces_.colour.resize(frame_.view.places() * 4);
-        if (any([](const Pass& pass) { return pass.kbuffer; })) {
-            CHECK(frame_.program != nullptr);
-            surfaces_.kbuffer.resize(frame_.view_of_kbuffer().places() * frame_.program->floats_per_pixel());
-        }
-        for (const char* surface : {"depth", "colour", "kbuffer"}) clear(surface);
-    }
-
-    void clear(std::string_view surface) {
-        if (surface == "depth") {
-            std::fill(surfaces_.depth.begin(), surfaces_.depth.end(), farthest_depth(frame_.depth_format));
-            std::fill(surfaces_.stencil.begin(), surfaces_.stencil.end(), std::uint8_t{0});
-        } else if (surface == "colour") {
-            const glm::vec4 colour = through_format(frame_.colour_format, frame_.background);
-            for (std::size_t i = 0; i < surfaces_.colour.size(); ++i)
-                surfaces_.colour[i] = colour[static_cast<int>(i % 4)];
-        } else if (surface == "kbuffer" && !surfaces_.kbuffer.empty()) {
-            const std::size_t floats = frame_.program->floats_per_pixel();
-            for (std::size_t at = 0; at < surfaces_.kbuffer.size(); at += floats)
-                frame_.program->clear(surfaces_.kbuffer.data() + at);
-        }
-    }
-
     void run(const Pass& pass) {
         switch (pass.kind) {
         case PassKind::clear:
-            for (const std::string& surface : pass.writes) clear(surface);
+            for (const SurfaceId surface : pass.clears) surfaces_.clear(surface);
             break;
         case PassKind::draw:
             draw(pass);
             break;
         case PassKind::resolve:
-            if (!surfaces_.kbuffer.empty())
-                image_.picture = composite(
-                    frame_, {surfaces_.kbuffer, surfaces_.colour, surfaces_.depth_values(frame_.depth_format)});
+            if (frame_.main_kbuffer() == no_surface) break;
+            read_surfaces();
+            image_.picture = composite(frame_, {image_.kbuffer, image_.colour, image_.depth});
             break;
         }
     }
@@ -222,12 +206,17 @@ class Reference {
         const FragmentStream& stream = streams_[next_stream_++];
         const View& view = frame_.view_of(pass);
         CHECK(stream.width == view.width && stream.height == view.height && stream.samples == view.samples);
-        // A k-buffer that a light sees is not tested against what the eye sees.
-        CHECK(!(pass.kbuffer && frame_.kbuffer_view) || !(pass.uses_depth() || pass.colour));
-        CHECK(!pass.colour || stream.colours.size() == stream.quads.size());
-        CHECK_MSG(!pass.kbuffer || !pass.tests_stencil(), "a k-buffer pass does not test stencil");
+        for_each_surface(pass, [&](SurfaceId surface) {
+            const SurfaceInfo& info = surfaces_.info(surface);
+            CHECK_MSG(info.width == view.width && info.height == view.height && info.planes == view.samples,
+                      fmt::format("pass {}: surface {} has another size than its view", pass.name, info.name));
+        });
+        CHECK(!pass.writes_colour() || stream.colours.size() == stream.quads.size());
+        CHECK_MSG(!pass.runs_program() || !pass.tests_stencil(), "a k-buffer pass does not test stencil");
+        CHECK(!pass.runs_program() || frame_.program != nullptr);
         const DrawStates states(pass, frame_.draws.size());
         const TileLists tiles(stream);
+        static_assert(TileLists::tile_width == SurfaceStore::page_size); // threads do not share pages
         parallel_for(threads_, tiles.count(), [&](std::size_t tile) {
             PassRunner runner(frame_, pass, states, stream, delay_, surfaces_, image_, counts_);
             tiles.for_each_pixel(tile, [&](std::uint32_t x, std::uint32_t y, std::span<const QuadId> quads) {
@@ -237,12 +226,24 @@ class Reference {
         });
     }
 
+    template <class Visit>
+    static void for_each_surface(const Pass& pass, Visit visit) {
+        for (const SurfaceId target : pass.targets) visit(target);
+        if (pass.uses_depth()) visit(pass.depth);
+        if (pass.runs_program()) visit(pass.kbuffer);
+    }
+
+    void read_surfaces() {
+        const SurfaceId depth = frame_.main_depth();
+        image_.kbuffer = entries_of(surfaces_, frame_.main_kbuffer());
+        image_.colour = colours_of(surfaces_, frame_.main_colour());
+        image_.depth = depths_of(surfaces_, depth);
+        image_.stencil = stencils_of(surfaces_, depth);
+    }
+
     void finish() {
         CHECK(next_stream_ == streams_.size());
-        image_.kbuffer = std::move(surfaces_.kbuffer);
-        image_.colour = std::move(surfaces_.colour);
-        image_.depth = surfaces_.depth_values(frame_.depth_format);
-        image_.stencil = std::move(surfaces_.stencil);
+        read_surfaces();
         image_.accepted_insertions = counts_.accepted;
         image_.missed_reads = counts_.missed_reads;
         image_.missed_pixels = counts_.missed_pixels;
@@ -253,7 +254,7 @@ class Reference {
     QuadId delay_;
     unsigned threads_;
     std::size_t next_stream_ = 0;
-    Surfaces surfaces_;
+    SurfaceStore surfaces_;
     ReferenceImage image_;
     Counts counts_;
 };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "pipeline/output/hazards.hpp"
+#include "pipeline/surface.hpp"
 #include "sim/field.hpp"
 #include "sim/json_value.hpp"
 #include "sim/time.hpp"
@@ -49,6 +50,12 @@ struct PassResult {
     std::string name;
     sim::Cycle first_cycle = 0, cycles = 0;
     sim::JsonValue counters; ///< stage name -> counters of this pass
+};
+
+/// A surface of the frame, and what its content took.
+struct SurfaceResult {
+    SurfaceInfo info;
+    SurfaceMemory memory;
 };
 
 /// Counters of one draw, over all passes; RunResult::draw_counters says which. There may be a million of them.
@@ -99,6 +106,7 @@ struct RunResult {
     sim::JsonValue caches; ///< cache -> { accesses, hits, misses, hit_rate }
     sim::JsonValue bytes;  ///< link -> bytes, and bytes per fragment
     sim::JsonValue area;   ///< as area_json() says
+    std::vector<SurfaceResult> surfaces;
     std::vector<PassResult> passes;
     std::vector<std::string> draw_counters; ///< names of DrawResult::counters
     std::vector<DrawResult> draws;

@@ -54,38 +54,13 @@ SurfaceStore::SurfaceStore(std::span<const SurfaceInfo> surfaces, std::uint64_t 
     }
 }
 
-SurfaceStore::SurfaceStore(const SurfaceStore& other) : end_address_(other.end_address_) {
-    for (const Surface& from : other.surfaces_) {
-        Surface& to = surfaces_.emplace_back();
-        to.info = from.info;
-        to.texel_bytes = from.texel_bytes;
-        to.cleared = from.cleared;
-        to.high_water = from.high_water;
-        for (const Level& level : from.levels) {
-            Level& copy = to.levels.emplace_back();
-            copy.width = level.width;
-            copy.rows = level.rows;
-            copy.pages_in_row = level.pages_in_row;
-            copy.address = level.address;
-            copy.pages.resize(level.pages.size());
-            const std::size_t bytes = std::size_t{page_size} * page_size * from.texel_bytes;
-            for (std::size_t page = 0; page < level.pages.size(); ++page) {
-                if (!level.pages[page]) continue;
-                copy.pages[page] = std::make_unique_for_overwrite<std::byte[]>(bytes);
-                std::memcpy(copy.pages[page].get(), level.pages[page].get(), bytes);
-            }
-        }
-    }
-}
-
-SurfaceStore& SurfaceStore::operator=(const SurfaceStore& other) {
-    if (this != &other) *this = SurfaceStore(other);
-    return *this;
-}
-
-std::unique_ptr<std::byte[]> SurfaceStore::new_page(const Surface& surface) {
+SurfaceStore::Page SurfaceStore::own_page(const Surface& surface, const std::byte* content) {
     const std::size_t texels = std::size_t{page_size} * page_size;
-    auto page = std::make_unique_for_overwrite<std::byte[]>(texels * surface.texel_bytes);
+    Page page(new std::byte[texels * surface.texel_bytes]);
+    if (content != nullptr) {
+        std::memcpy(page.get(), content, texels * surface.texel_bytes);
+        return page;
+    }
     for (std::size_t i = 0; i < texels; ++i)
         std::memcpy(page.get() + i * surface.texel_bytes, surface.cleared.data(), surface.texel_bytes);
     return page;
@@ -95,7 +70,7 @@ void SurfaceStore::clear(SurfaceId id) {
     Surface& surface = surfaces_[id];
     surface.high_water = std::max(surface.high_water, allocated(surface));
     for (Level& level : surface.levels)
-        for (std::unique_ptr<std::byte[]>& page : level.pages) page.reset();
+        for (Page& page : level.pages) page.reset();
 }
 
 bool SurfaceStore::same(const SurfaceStore& other, SurfaceId surface, SurfacePlace place) const {

@@ -64,7 +64,8 @@ struct SurfaceMemory {
     std::uint64_t high_water = 0; ///< the largest value of `allocated` so far
 };
 
-/// The bytes of all surfaces. Different pages may be written by different threads at the same time.
+/// The bytes of all surfaces. Different pages may be written by different threads at the same time. Copies share pages
+/// until one of them writes.
 class SurfaceStore {
   public:
     static constexpr std::uint32_t page_size = 16; ///< pixels along a side
@@ -72,12 +73,6 @@ class SurfaceStore {
     SurfaceStore() = default;
     /// All surfaces hold their cleared value. Addresses begin at `first_address`, each level at a multiple of 256.
     explicit SurfaceStore(std::span<const SurfaceInfo> surfaces, std::uint64_t first_address = 0);
-    SurfaceStore(SurfaceStore&&) noexcept = default;
-    SurfaceStore& operator=(SurfaceStore&&) noexcept = default;
-    /// With the same bytes, and as many pages.
-    SurfaceStore(const SurfaceStore& other);
-    SurfaceStore& operator=(const SurfaceStore& other);
-    ~SurfaceStore() = default;
 
     std::size_t count() const { return surfaces_.size(); }
     const SurfaceInfo& info(SurfaceId surface) const { return surfaces_[surface].info; }
@@ -86,8 +81,8 @@ class SurfaceStore {
     std::byte* written(SurfaceId surface, SurfacePlace place) {
         const Level& level = surfaces_[surface].levels[place.level];
         const Location at = location_of(level, place, surfaces_[surface].texel_bytes);
-        std::unique_ptr<std::byte[]>& page = surfaces_[surface].levels[place.level].pages[at.page];
-        if (!page) page = new_page(surfaces_[surface]);
+        Page& page = surfaces_[surface].levels[place.level].pages[at.page];
+        if (page.use_count() != 1) page = own_page(surfaces_[surface], page.get());
         return page.get() + at.offset;
     }
     /// The texel as it is, a cleared one where nothing was written.
@@ -99,6 +94,14 @@ class SurfaceStore {
         return page != nullptr ? page + at.offset : of.cleared.data();
     }
 
+    /// A pixel of a k-buffer: its program's floats.
+    const float* entries(SurfaceId kbuffer, SurfacePlace place) const {
+        return reinterpret_cast<const float*>(read(kbuffer, place)); // pages hold whole pixels
+    }
+    float* written_entries(SurfaceId kbuffer, SurfacePlace place) {
+        return reinterpret_cast<float*>(written(kbuffer, place));
+    }
+
     /// Sets every texel to the cleared value and gives the pages back.
     void clear(SurfaceId surface);
     /// Whether both hold the same bytes there.
@@ -108,6 +111,8 @@ class SurfaceStore {
     std::uint32_t rows(SurfaceId surface, std::uint32_t level = 0) const {
         return surfaces_[surface].levels[level].rows;
     }
+    /// Texels of level 0 that lie in memory: those of all rows.
+    std::size_t places(SurfaceId surface) const { return std::size_t{info(surface).width} * rows(surface); }
     /// Byte address of a texel in GPU memory: tiles of 4x4 pixels in row order, 2x2 blocks within. A block of a
     /// k-buffer holds one render target (16 bytes a pixel) after the other.
     std::uint64_t address(SurfaceId surface, SurfacePlace place, std::uint32_t target = 0) const;
@@ -117,11 +122,13 @@ class SurfaceStore {
     SurfaceMemory memory(SurfaceId surface) const;
 
   private:
+    using Page = std::shared_ptr<std::byte[]>;
+
     struct Level {
         std::uint32_t width = 0, rows = 0;
         std::uint32_t pages_in_row = 0;
         std::uint64_t address = 0;
-        std::vector<std::unique_ptr<std::byte[]>> pages; ///< empty pages are null
+        std::vector<Page> pages; ///< cleared ones are null
     };
     struct Surface {
         SurfaceInfo info;
@@ -138,7 +145,7 @@ class SurfaceStore {
         const std::size_t page = std::size_t{place.row / page_size} * level.pages_in_row + place.x / page_size;
         return {page, std::size_t{place.row % page_size * page_size + place.x % page_size} * texel_bytes};
     }
-    static std::unique_ptr<std::byte[]> new_page(const Surface& surface);
+    static Page own_page(const Surface& surface, const std::byte* content);
     static std::uint64_t allocated(const Surface& surface);
 
     std::vector<Surface> surfaces_;

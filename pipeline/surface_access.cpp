@@ -106,9 +106,7 @@ std::array<const float*, 4> SurfaceAccess::pixels(SurfaceId kbuffer, const LaneI
     const auto place = [&](std::size_t i) {
         return SurfacePlace{static_cast<std::uint32_t>(x[i]), static_cast<std::uint32_t>(row[i]), 0};
     };
-    for_each_pixel(pixels, [&](std::size_t i) {
-        result[i] = reinterpret_cast<const float*>(surfaces_.read(kbuffer, place(i))); // pages hold whole pixels
-    });
+    for_each_pixel(pixels, [&](std::size_t i) { result[i] = surfaces_.entries(kbuffer, place(i)); });
     if (work_ == nullptr) return result;
     for (std::uint32_t target = first; target < first + count; ++target) {
         work_->begin_fetch(16);

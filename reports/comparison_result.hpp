@@ -96,7 +96,7 @@ struct Comparison {
     /// back; where there is none, the first.
     std::size_t base_run() const;
     /// The k-buffer, hazards and fragments per pixel are those of another view than the picture.
-    bool has_light_view() const { return frame->kbuffer_view.has_value(); }
+    bool has_light_view() const { return frame->kbuffer_seen_from_elsewhere(); }
 };
 
 } // namespace reports

@@ -2,6 +2,7 @@
 
 #include "reports/hazard_text.hpp"
 #include "reports/run_numbers.hpp"
+#include "reports/surface_text.hpp"
 #include "ropsim_build.hpp"
 #include "sim/described_json.hpp"
 
@@ -153,6 +154,21 @@ ordered_json passes_json(const pipeline::RunResult& run) {
     return list;
 }
 
+ordered_json surfaces_json(const pipeline::RunResult& run) {
+    ordered_json list = ordered_json::array();
+    for (const auto& [info, memory] : run.surfaces)
+        list.push_back({{"name", info.name},
+                        {"format", content_text(info)},
+                        {"width", info.width},
+                        {"height", info.height},
+                        {"planes", info.planes},
+                        {"levels", info.levels},
+                        {"nominal_bytes", memory.nominal},
+                        {"allocated_bytes", memory.allocated},
+                        {"high_water_bytes", memory.high_water}});
+    return list;
+}
+
 constexpr std::size_t most_draws_listed = 64;
 
 ordered_json draw_counters_json(const pipeline::RunResult& run, const std::vector<std::uint64_t>& counters) {
@@ -234,6 +250,7 @@ ordered_json design_json(const Comparison& comparison, std::size_t number, const
                          {"bytes", *run.bytes},
                          {"area", *run.area},
                          {"supports", *comparison.design_support.at(number)},
+                         {"surfaces", surfaces_json(run)},
                          {"passes", passes_json(run)},
                          {"draws", draws_json(run)}};
     if (run.draws.size() > most_draws_listed) json["draws_summed"] = draws_summed_json(run);

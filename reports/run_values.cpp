@@ -56,7 +56,7 @@ PassSums sums_of(const pipeline::RunResult& run, const std::string& pass) {
 PassSums clears_of_kbuffer(const pipeline::Frame& frame, const pipeline::RunResult& run) {
     PassSums sums;
     for (const pipeline::Pass& pass : frame.passes) {
-        if (pass.kind != pipeline::PassKind::clear || pass.writes != std::vector<std::string>{"kbuffer"}) continue;
+        if (pass.clears != std::vector<pipeline::SurfaceId>{frame.main_kbuffer()}) continue;
         const PassSums cleared = sums_of(run, pass.name);
         sums.cycles += cleared.cycles;
         sums.bytes += cleared.bytes;
@@ -81,7 +81,7 @@ void RunValues::read_passes(const Comparison& comparison, const pipeline::RunRes
                     static_cast<double>(comparison.scene.triangles_drawn) / ms / 1e3;
         };
         write(fmt::format("pass.{}.", pass.name));
-        if (!pass.kbuffer) continue;
+        if (!pass.runs_program()) continue;
         const PassSums cleared = clears_of_kbuffer(*comparison.frame, run);
         cycles += cleared.cycles;
         bytes += cleared.bytes;

@@ -1,11 +1,13 @@
 #include "traces/pass_graph.hpp"
 
+#include "pipeline/functional/surface_texel.hpp"
 #include "pipeline/geometry/vertex_fetch.hpp" // reads_attribute
 #include "sim/check.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -25,58 +27,6 @@ namespace {
 bool contains(const std::vector<std::string>& names, std::string_view name) {
     return std::find(names.begin(), names.end(), name) != names.end();
 }
-
-// Walks the passes from last to first and keeps what somebody behind still reads.
-class Culling {
-  public:
-    explicit Culling(const std::vector<std::string>& outputs) : live_(outputs.begin(), outputs.end()) {}
-
-    void visit(Pass pass) {
-        if (pass.kind == PassKind::draw && pass.draws.empty()) {
-            note(fmt::format("pass {}", pass.name), "it draws nothing");
-            return;
-        }
-        if (std::none_of(pass.writes.begin(), pass.writes.end(),
-                         [&](const auto& name) { return live_.contains(name); })) {
-            note(fmt::format("pass {}", pass.name), fmt::format("nobody reads {}", fmt::join(pass.writes, ", ")));
-            return;
-        }
-        drop_unread_writes(pass);
-        // Clears and resolves write every pixel, so what was there before is of no use; draws write some of them.
-        if (pass.kind != PassKind::draw)
-            for (const std::string& name : pass.writes) live_.erase(name);
-        live_.insert(pass.reads.begin(), pass.reads.end());
-        kept_.push_back(std::move(pass));
-    }
-
-    std::vector<Pass> kept() const { return reversed(kept_); }
-    std::vector<LeftOut> left_out() const { return reversed(left_out_); }
-
-  private:
-    void drop_unread_writes(Pass& pass) {
-        std::vector<std::string> writes;
-        for (const std::string& name : pass.writes) {
-            // A pass that reads what it writes itself needs it: a depth test without depth writes is another test.
-            if (live_.contains(name) || contains(pass.reads, name))
-                writes.push_back(name);
-            else if (pass.kind == PassKind::draw) // else the pass that would write it is reported
-                note(fmt::format("{} of pass {}", name, pass.name), "nobody reads it");
-        }
-        pass.writes = std::move(writes);
-    }
-
-    void note(std::string unit, std::string reason) { left_out_.push_back({std::move(unit), std::move(reason)}); }
-
-    template <class T>
-    static std::vector<T> reversed(std::vector<T> list) {
-        std::reverse(list.begin(), list.end());
-        return list;
-    }
-
-    std::set<std::string> live_;
-    std::vector<Pass> kept_;
-    std::vector<LeftOut> left_out_;
-};
 
 // What the draws of the remaining passes offer to be used.
 struct Offers {
@@ -118,11 +68,11 @@ Offers offers_of(const Frame& frame) {
 Needs needs_of(const Frame& frame, const Offers& offers, FragmentColour colour) {
     Needs needs;
     for (const Pass& pass : frame.passes) {
-        needs.colours |= pass.colour || (pass.kbuffer && frame.program->needs_colour());
+        needs.colours |= pass.writes_colour() || (pass.runs_program() && frame.program->needs_colour());
         needs.depth |= pass.uses_depth();
         needs.early_depth |= pass.tests_depth() && !pass.writes_depth();
-        needs.colour_surface |= contains(pass.writes, colour_surface) || contains(pass.reads, colour_surface);
-        needs.kbuffer |= pass.kbuffer;
+        needs.colour_surface |= pass.writes_colour();
+        needs.kbuffer |= pass.runs_program();
         needs.attributes |= pass.attributes;
     }
     needs.index_buffer = offers.indices;
@@ -201,63 +151,120 @@ void list_left_out(std::vector<LeftOut>& list, const Needs& needs, const Offers&
 
 } // namespace
 
+// Walks the passes from last to first and keeps what somebody behind still reads.
+class PassGraph::Culling {
+  public:
+    explicit Culling(const std::vector<std::string>& outputs) : live_(outputs.begin(), outputs.end()) {}
+
+    void visit(Node node) {
+        const Pass& pass = node.pass;
+        if (pass.kind == PassKind::draw && pass.draws.empty()) {
+            note(fmt::format("pass {}", pass.name), "it draws nothing");
+            return;
+        }
+        if (std::none_of(node.writes.begin(), node.writes.end(),
+                         [&](const auto& name) { return live_.contains(name); })) {
+            note(fmt::format("pass {}", pass.name), fmt::format("nobody reads {}", fmt::join(node.writes, ", ")));
+            return;
+        }
+        drop_unread_writes(node);
+        // Clears and resolves write every pixel, so what was there before is of no use; draws write some of them.
+        if (pass.kind != PassKind::draw)
+            for (const std::string& name : node.writes) live_.erase(name);
+        live_.insert(node.reads.begin(), node.reads.end());
+        kept_.push_back(std::move(node));
+    }
+
+    std::vector<Node> kept() const { return reversed(kept_); }
+    std::vector<LeftOut> left_out() const { return reversed(left_out_); }
+
+  private:
+    void drop_unread_writes(Node& node) {
+        std::vector<std::string> writes;
+        for (const std::string& name : node.writes) {
+            // A pass that reads what it writes itself needs it: a depth test without depth writes is another test.
+            if (live_.contains(name) || contains(node.reads, name))
+                writes.push_back(name);
+            else if (node.pass.kind == PassKind::draw) // else the pass that would write it is reported
+                note(fmt::format("{} of pass {}", name, node.pass.name), "nobody reads it");
+        }
+        node.writes = std::move(writes);
+    }
+
+    void note(std::string unit, std::string reason) { left_out_.push_back({std::move(unit), std::move(reason)}); }
+
+    template <class T>
+    static std::vector<T> reversed(std::vector<T> list) {
+        std::reverse(list.begin(), list.end());
+        return list;
+    }
+
+    std::set<std::string> live_;
+    std::vector<Node> kept_;
+    std::vector<LeftOut> left_out_;
+};
+
 PassGraph::PassGraph(Frame frame) : frame_(std::move(frame)) {
     CHECK(frame_.resources != nullptr);
     frame_.passes.clear();
 }
 
 void PassGraph::add_clear(std::string name, std::vector<std::string> writes) {
-    Pass pass;
-    pass.name = std::move(name);
-    pass.kind = PassKind::clear;
-    pass.writes = std::move(writes);
-    passes_.push_back(std::move(pass));
+    Node& node = nodes_.emplace_back();
+    node.pass.name = std::move(name);
+    node.pass.kind = PassKind::clear;
+    node.writes = std::move(writes);
 }
 
 void PassGraph::add_draw(std::string name, std::vector<std::string> reads, std::vector<std::string> writes,
                          std::vector<std::uint32_t> draws, bool both_faces, const pipeline::BlendState& blend) {
     for (const std::uint32_t draw : draws) CHECK(draw < frame_.draws.size());
     CHECK(!contains(writes, kbuffer_surface) || frame_.program != nullptr);
-    Pass pass;
+    Node& node = nodes_.emplace_back();
+    node.reads = std::move(reads);
+    node.writes = std::move(writes);
+    Pass& pass = node.pass;
     pass.name = std::move(name);
-    pass.reads = std::move(reads);
-    pass.writes = std::move(writes);
     pass.draws = std::move(draws);
     pass.both_faces = both_faces;
     pass.states[0].blend[0] = blend;
-    pass.states[0].depth.test = contains(pass.reads, depth_surface);
-    pass.states[0].depth.write = contains(pass.writes, depth_surface);
-    if (contains(pass.writes, kbuffer_surface) && !contains(pass.reads, kbuffer_surface))
-        pass.reads.emplace_back(kbuffer_surface);
-    passes_.push_back(std::move(pass));
+    pass.states[0].depth.test = contains(node.reads, depth_surface);
+    pass.states[0].depth.write = contains(node.writes, depth_surface);
+    if (contains(node.writes, kbuffer_surface) && !contains(node.reads, kbuffer_surface))
+        node.reads.emplace_back(kbuffer_surface);
 }
 
-void PassGraph::vertex_shader_reads(std::uint32_t attributes) {
-    CHECK(!passes_.empty() && passes_.back().kind == PassKind::draw);
-    passes_.back().attributes = attributes;
+Pass& PassGraph::last_draw() {
+    CHECK(!nodes_.empty() && nodes_.back().pass.kind == PassKind::draw);
+    return nodes_.back().pass;
+}
+
+void PassGraph::vertex_shader_reads(std::uint32_t attributes) { last_draw().attributes = attributes; }
+
+void PassGraph::see_from(const pipeline::View& view) {
+    frame_.other_views.push_back(view);
+    last_draw().view = static_cast<std::uint32_t>(frame_.other_views.size());
 }
 
 void PassGraph::write_targets(std::uint32_t targets) {
-    CHECK(!passes_.empty() && passes_.back().kind == PassKind::draw && targets >= 1);
-    passes_.back().colour_targets = targets;
+    CHECK(targets >= 1);
+    last_draw().written_targets = targets;
 }
 
 void PassGraph::set_states(std::vector<pipeline::RasterState> states, std::vector<std::uint32_t> of_draw) {
-    CHECK(!passes_.empty() && passes_.back().kind == PassKind::draw && !states.empty());
-    CHECK(of_draw.empty() || of_draw.size() == passes_.back().draws.size());
-    passes_.back().states = std::move(states);
-    passes_.back().state_of_draw = std::move(of_draw);
+    CHECK(!states.empty() && (of_draw.empty() || of_draw.size() == last_draw().draws.size()));
+    last_draw().states = std::move(states);
+    last_draw().state_of_draw = std::move(of_draw);
 }
 
 void PassGraph::use(pipeline::FragmentColour colour) { fragment_colour_ = colour; }
 
 void PassGraph::add_resolve(std::string name, std::vector<std::string> reads, std::vector<std::string> writes) {
-    Pass pass;
-    pass.name = std::move(name);
-    pass.kind = PassKind::resolve;
-    pass.reads = std::move(reads);
-    pass.writes = std::move(writes);
-    passes_.push_back(std::move(pass));
+    Node& node = nodes_.emplace_back();
+    node.pass.name = std::move(name);
+    node.pass.kind = PassKind::resolve;
+    node.reads = std::move(reads);
+    node.writes = std::move(writes);
 }
 
 void PassGraph::output(std::string surface) { outputs_.push_back(std::move(surface)); }
@@ -266,21 +273,55 @@ void PassGraph::leave_out(std::string unit, std::string reason) {
     left_out_.push_back({std::move(unit), std::move(reason)});
 }
 
+// Each surface is as large as what the first pass that draws to it sees.
+void PassGraph::bind_surfaces(Frame& frame, std::span<const Node> nodes) {
+    const auto info_of = [&frame](const std::string& name, const pipeline::View& view) {
+        pipeline::SurfaceInfo info{.name = name, .width = view.width, .height = view.height, .planes = view.samples};
+        if (name == depth_surface) {
+            info.format = frame.depth_format;
+            pack_depth_stencil(info.format, {farthest_depth(info.format), 0}, info.cleared.data());
+        } else if (name == colour_surface) {
+            info.format = frame.colour_format;
+            pack_colour(info.format, frame.background, info.cleared.data());
+        } else {
+            info.program = frame.program;
+        }
+        return info;
+    };
+    std::map<std::string, pipeline::SurfaceId> ids;
+    const auto id_of = [&](const std::string& name, const pipeline::View& view) {
+        const auto [at, added] = ids.try_emplace(name, static_cast<pipeline::SurfaceId>(frame.surfaces.size()));
+        if (added) frame.surfaces.push_back(info_of(name, view));
+        return at->second;
+    };
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        Pass& pass = frame.passes[i];
+        if (pass.kind != PassKind::draw) continue;
+        const pipeline::View& view = frame.view_of(pass);
+        if (pass.uses_depth()) pass.depth = id_of(depth_surface, view);
+        if (contains(nodes[i].writes, colour_surface)) pass.targets = {id_of(colour_surface, view)};
+        if (contains(nodes[i].writes, kbuffer_surface)) pass.kbuffer = id_of(kbuffer_surface, view);
+    }
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+        if (frame.passes[i].kind == PassKind::clear)
+            for (const std::string& name : nodes[i].writes) frame.passes[i].clears.push_back(id_of(name, frame.view));
+}
+
 Frame PassGraph::lower() const {
     Culling culling(outputs_);
-    for (auto pass = passes_.rbegin(); pass != passes_.rend(); ++pass) culling.visit(*pass);
+    for (auto node = nodes_.rbegin(); node != nodes_.rend(); ++node) culling.visit(*node);
     Frame frame = frame_;
-    frame.passes = culling.kept();
-    for (Pass& pass : frame.passes) {
+    const std::vector<Node> kept = culling.kept();
+    for (const Node& node : kept) {
+        Pass& pass = frame.passes.emplace_back(node.pass);
         if (pass.kind != PassKind::draw) continue;
         for (pipeline::RasterState& state : pass.states) {
-            state.depth.test &= contains(pass.reads, depth_surface);
-            state.stencil.test &= contains(pass.reads, depth_surface);
-            state.depth.write &= contains(pass.writes, depth_surface);
+            state.depth.test &= contains(node.reads, depth_surface);
+            state.stencil.test &= contains(node.reads, depth_surface);
+            state.depth.write &= contains(node.writes, depth_surface);
         }
-        pass.colour = contains(pass.writes, colour_surface);
-        pass.kbuffer = contains(pass.writes, kbuffer_surface);
     }
+    bind_surfaces(frame, kept);
     const Offers offers = offers_of(frame);
     frame.needs = needs_of(frame, offers, fragment_colour_);
     if (frame.needs.textures) frame.resources->read_textures();

@@ -4,6 +4,7 @@
 #include "pipeline/frame.hpp"
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -32,7 +33,9 @@ class PassGraph {
     /// The vertex shader of the pass added last reads these attributes beside what shading needs: bits as in
     /// pipeline::mask_of().
     void vertex_shader_reads(std::uint32_t attributes);
-    /// The pass added last writes that many colour targets at once; see pipeline::Pass::colour_targets.
+    /// The pass added last sees the scene from there instead of Frame::view.
+    void see_from(const pipeline::View& view);
+    /// The pass added last writes that many colour targets at once; see pipeline::Pass::written_targets.
     void write_targets(std::uint32_t targets);
     /// The raster states of the pass added last, and which of them each of its draws has (none: all the first), instead
     /// of the one that add_draw() made. Tests and writes of surfaces that the pass does not name are switched off.
@@ -50,9 +53,19 @@ class PassGraph {
     pipeline::Frame lower() const;
 
   private:
+    struct Node {
+        pipeline::Pass pass;
+        std::vector<std::string> reads, writes; ///< names of surfaces
+    };
+    class Culling;
+
+    /// The last pass, which draws.
+    pipeline::Pass& last_draw();
+    static void bind_surfaces(pipeline::Frame& frame, std::span<const Node> nodes);
+
     pipeline::Frame frame_;
     pipeline::FragmentColour fragment_colour_ = pipeline::FragmentColour::lit;
-    std::vector<pipeline::Pass> passes_;
+    std::vector<Node> nodes_;
     std::vector<std::string> outputs_;
     std::vector<pipeline::LeftOut> left_out_;
 };

@@ -73,7 +73,7 @@ class Resubmission {
 
     Frame frame() {
         for (std::size_t i = 0; i < frame_.passes.size(); ++i)
-            if (frame_.passes[i].kbuffer) resubmit(result_.passes[i]);
+            if (frame_.passes[i].runs_program()) resubmit(result_.passes[i]);
         resources_->place();
         result_.resources = resources_;
         return std::move(result_);

@@ -43,8 +43,8 @@ struct PassContext {
     bool farthest = false;               ///< capture the farthest fragment, too
     std::uint32_t first_kept = 0;        ///< lists: fragments of a pixel that earlier passes have dealt with
     PassesSite peel;
-    const std::vector<DepthCode>* read_only_depth = nullptr; ///< early depth test against a finished depth surface
-    SurfaceFormat read_only_format = SurfaceFormat::d24;
+    const SurfaceStore* read_only_surfaces = nullptr; ///< of the early depth test against a finished depth surface
+    SurfaceId read_only_depth = no_surface;
     DrawStates read_only_states;                     ///< whose depth compares that test makes
     SurfaceFormat depth_format = SurfaceFormat::d24; ///< of the surface that the pass tests and writes
     SurfaceFormat colour_format = SurfaceFormat::rgba8;

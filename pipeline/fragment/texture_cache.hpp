@@ -10,6 +10,7 @@
 #include "pipeline/output/kbuffer_memory.hpp"
 #include "sim/described.hpp"
 #include "sim/stats.hpp"
+#include "sim/time.hpp"
 
 #include <cstdint>
 #include <vector>

@@ -157,8 +157,8 @@ class Rop final : public sim::Component {
     bool send_commits();
     void sample(const KBufferRead& read, std::uint64_t targets);
     std::uint32_t run_depth_colour(const Queued& queued);
-    void store_colour(const RasterState& state, QuadId quad, std::uint32_t pixel, std::size_t at);
-    FragmentTest test_pixel(const RasterState& state, QuadId quad, std::size_t at, DepthCode incoming);
+    void store_colours(const RasterState& state, QuadId quad, std::uint32_t pixel, SurfacePlace place);
+    FragmentTest test_pixel(const RasterState& state, QuadId quad, SurfacePlace place, DepthCode incoming);
     std::uint32_t run_store(const Queued& queued);
     std::uint32_t run_blend(const Queued& queued);
     std::uint32_t run_append(const Queued& queued);

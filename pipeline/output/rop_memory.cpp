@@ -57,8 +57,8 @@ std::uint64_t Rop::line_address(Use use, std::uint32_t line) const {
 }
 
 ClearBits* Rop::clear_bits(Use use) const {
-    return use == Use::depth    ? &surfaces_.fixed->depth_clear
-           : use == Use::colour ? &surfaces_.fixed->colour_clear
+    return use == Use::depth    ? surfaces_.fixed->depth_clear
+           : use == Use::colour ? surfaces_.fixed->colour_clear
                                 : surfaces_.kbuffer_clear;
 }
 

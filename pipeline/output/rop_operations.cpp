@@ -20,18 +20,18 @@ std::uint32_t Rop::run_depth_colour(const Queued& queued) {
     std::uint32_t kept = 0, written = 0; // masks: that passed, whose depth or stencil was stored
     for (std::uint32_t pixel = 0; pixel < 4; ++pixel) {
         if ((queued.task.mask >> pixel & 1) == 0) continue;
-        const std::size_t at = pass_->place(quad, pixel);
+        const SurfacePlace place{quad.x + pixel % 2, quad.y + pixel / 2, 0};
         const DepthCode code = depth_code(pass_->depth_format, pass_->stream->depths[queued.task.quad][pixel]);
-        if (pass_->farthest) capture_farthest(queued.task.quad, at, code);
+        if (pass_->farthest) capture_farthest(queued.task.quad, pass_->place(quad, pixel), code);
         if (use.depth) {
-            const FragmentTest test = test_pixel(state, queued.task.quad, at, code);
+            const FragmentTest test = test_pixel(state, queued.task.quad, place, code);
             written |= (test.written ? 1U : 0U) << pixel;
             if (!test.passed()) continue;
         }
         ++stats_.depth_passed;
         kept |= 1U << pixel;
-        surfaces_.fixed->winner[at] = queued.task.quad;
-        if (use.colour && !surfaces_.fixed->colour.empty()) store_colour(state, queued.task.quad, pixel, at);
+        if (!surfaces_.fixed->winner.empty()) surfaces_.fixed->winner[pass_->place(quad, pixel)] = queued.task.quad;
+        if (use.colour) store_colours(state, queued.task.quad, pixel, place);
     }
     const std::uint32_t changed = pass_->farthest ? queued.task.mask : written;
     if (use.depth) depth_tiles_.mark_dirty(queued.entry[0], depth_tiles_.shape().in_line(block, changed));
@@ -42,11 +42,15 @@ std::uint32_t Rop::run_depth_colour(const Queued& queued) {
                       (use.colour ? count(kept) * (use.keeps_colour ? 2 : 1) * pass_->colour_bytes : 0));
 }
 
-FragmentTest Rop::test_pixel(const RasterState& state, QuadId quad, std::size_t at, DepthCode incoming) {
-    FixedSurfaces& fixed = *surfaces_.fixed;
+FragmentTest Rop::test_pixel(const RasterState& state, QuadId quad, SurfacePlace place, DepthCode incoming) {
+    const FixedSurfaces& fixed = *surfaces_.fixed;
+    const SurfaceFormat format = pass_->depth_format;
+    const DepthStencil before = unpack_depth_stencil(format, fixed.surfaces->read(fixed.depth, place));
+    DepthStencil texel = before;
     const bool front = state.stencil.test && shows_front(state, *pass_->stream, quad);
-    const FragmentTest test = test_fragment(state, front, incoming, fixed.depth.empty() ? nullptr : &fixed.depth[at],
-                                            fixed.stencil.empty() ? nullptr : &fixed.stencil[at]);
+    const FragmentTest test = test_fragment(state, front, incoming, has_depth(format) ? &texel.depth : nullptr,
+                                            has_stencil(format) ? &texel.stencil : nullptr);
+    if (texel != before) pack_depth_stencil(format, texel, fixed.surfaces->written(fixed.depth, place));
     if (test.stencil_failed) ++stats_.stencil_failed;
     if (test.depth_failed) ++stats_.depth_failed;
     return test;
@@ -59,11 +63,18 @@ void Rop::capture_farthest(QuadId quad, std::size_t at, DepthCode code) {
     surfaces_.fixed->far_winner[at] = quad;
 }
 
-void Rop::store_colour(const RasterState& state, QuadId quad, std::uint32_t pixel, std::size_t at) {
-    glm::vec4 source = pass_->stream->colours[quad][pixel];
-    if (state.blend[0].enabled) source.a *= pass_->frame->opacity;
-    glm::vec4& stored = surfaces_.fixed->colour[at];
-    stored = write_colour(pass_->colour_format, state.blend[0], state.write_mask[0], source, stored);
+void Rop::store_colours(const RasterState& state, QuadId quad, std::uint32_t pixel, SurfacePlace place) {
+    const FixedSurfaces& fixed = *surfaces_.fixed;
+    for (std::size_t target = 0; target < fixed.targets.size(); ++target) {
+        if (state.write_mask[target] == 0) continue;
+        glm::vec4 source = pass_->stream->colours[quad][pixel];
+        if (state.blend[target].enabled) source.a *= pass_->frame->opacity;
+        std::byte* texel = fixed.surfaces->written(fixed.targets[target], place);
+        const glm::vec4 stored = unpack_texel(pass_->colour_format, texel);
+        pack_colour(pass_->colour_format,
+                    write_colour(pass_->colour_format, state.blend[target], state.write_mask[target], source, stored),
+                    texel);
+    }
 }
 
 // Books the store of one pixel; `oldest` becomes the version of the oldest render target it was computed from.

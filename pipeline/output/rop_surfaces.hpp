@@ -6,21 +6,23 @@
 #include "pipeline/output/clear_bits.hpp"
 #include "pipeline/output/fragment_lists.hpp"
 #include "pipeline/output/hazard_ledger.hpp"
+#include "pipeline/surface.hpp"
 
 #include <vector>
 
 namespace pipeline {
 
-/// What the fixed-function ROP reads and writes, in row order; each pixel is touched by the group that owns it.
+/// What the fixed-function ROP reads and writes in the pass that runs; each pixel is touched by the group that owns it.
 struct FixedSurfaces {
-    std::vector<DepthCode> depth;
-    std::vector<std::uint8_t> stencil; ///< empty when the depth format has none
-    std::vector<QuadId> winner;        ///< ~0 = cleared
-    std::vector<glm::vec4> colour;     ///< linear RGBA, as the colour format holds it; empty when no pass writes colour
-    // Where a pass captures the farthest fragment, too.
-    std::vector<DepthCode> far_depth; ///< 0 = cleared
+    SurfaceStore* surfaces = nullptr;
+    SurfaceId depth = no_surface;
+    std::vector<SurfaceId> targets;   ///< empty: nobody wants the colours' values
+    ClearBits* depth_clear = nullptr; ///< sectors that a fast clear left unwritten; null: never cleared
+    ClearBits* colour_clear = nullptr;
+    // Of a layer that is peeled, in row order.
+    std::vector<QuadId> winner;       ///< that passed last; ~0 = cleared
+    std::vector<DepthCode> far_depth; ///< of the farthest fragment, where it is captured, too; 0 = cleared
     std::vector<QuadId> far_winner;
-    ClearBits depth_clear, colour_clear; ///< sectors that a fast clear left unwritten
 };
 
 /// What one draw did to the output stage.

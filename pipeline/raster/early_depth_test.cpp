@@ -56,12 +56,16 @@ std::uint32_t EarlyDepthTest::before_last_entry(const QuadTask& task) const {
 }
 
 std::uint32_t EarlyDepthTest::before_surface(const QuadTask& task) const {
-    if (pass_->read_only_depth == nullptr) return task.mask;
-    return kept_samples(task, [this](QuadId id, std::uint32_t pixel) {
+    if (pass_->read_only_depth == no_surface) return task.mask;
+    const SurfaceStore& surfaces = *pass_->read_only_surfaces;
+    const SurfaceFormat format = surfaces.info(pass_->read_only_depth).format;
+    return kept_samples(task, [&](QuadId id, std::uint32_t pixel) {
         const DepthState& test = pass_->read_only_states.of(*pass_->stream, id).depth;
         if (!test.test) return true;
-        const DepthCode code = depth_code(pass_->read_only_format, pass_->stream->depths[id][pixel]);
-        return passes(test.compare, code, (*pass_->read_only_depth)[pass_->place(pass_->stream->quads[id], pixel)]);
+        const DepthCode code = depth_code(format, pass_->stream->depths[id][pixel]);
+        const Quad& quad = pass_->stream->quads[id];
+        const std::byte* stored = surfaces.read(pass_->read_only_depth, {quad.x + pixel % 2, quad.y + pixel / 2, 0});
+        return passes(test.compare, code, unpack_depth_stencil(format, stored).depth);
     });
 }
 

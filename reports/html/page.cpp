@@ -65,6 +65,7 @@ std::string html_page(const Comparison& comparison, const std::vector<PictureFil
     html += "<section id=\"charts\" hidden><h2>Charts</h2><div class=\"charts\"></div></section>\n";
     html += section("pictures", "Pictures", pictures_section(comparison, pictures));
     html += section("passes", "Passes", passes_section(comparison));
+    html += section("surfaces", "Surfaces", surfaces_section(comparison));
     html += section("needs", "Built and left out", needs_section(comparison));
     html += section("counters", "Counters", counters_section(comparison));
     html += section("parameters", "Parameters", parameters_section(comparison));

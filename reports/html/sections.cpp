@@ -7,6 +7,7 @@
 #include "reports/left_out.hpp"
 #include "reports/numbers.hpp"
 #include "reports/run_numbers.hpp"
+#include "reports/surface_text.hpp"
 #include "reports/wrong_text.hpp"
 
 #include <algorithm>
@@ -175,6 +176,16 @@ std::string passes_section(const Comparison& comparison) {
         for (const pipeline::PassResult& pass : run.passes)
             rows.push_back({{run.design, "name"}, {pass.name, ""}, number(pass.first_cycle), number(pass.cycles)});
     return html_table({"design", "pass", "first cycle", "cycles"}, rows);
+}
+
+std::string surfaces_section(const Comparison& comparison) {
+    std::vector<std::vector<HtmlCell>> rows;
+    for (const SurfaceRow& row : surface_rows(comparison))
+        rows.push_back(
+            {{row.name, "name"}, {row.content, ""}, {row.size, ""}, number(row.nominal), number(row.high_water)});
+    return html_table({"surface", "content", "size [pixels]", "whole [bytes]", "written at once [bytes]"}, rows) +
+           "<p class=\"note\">A surface takes memory where something wrote to it, in pages of 16 x 16 pixels: the most "
+           "that were written to at any time, in any design.</p>\n";
 }
 
 std::string needs_section(const Comparison& comparison) {

@@ -17,6 +17,8 @@ std::string hazards_section(const Comparison& comparison);
 std::string area_section(const Comparison& comparison);
 std::string pictures_section(const Comparison& comparison, const std::vector<PictureFile>& pictures);
 std::string passes_section(const Comparison& comparison);
+/// What passes wrote to, and the memory of it.
+std::string surfaces_section(const Comparison& comparison);
 std::string needs_section(const Comparison& comparison);
 std::string counters_section(const Comparison& comparison);
 std::string parameters_section(const Comparison& comparison);

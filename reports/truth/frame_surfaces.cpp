@@ -25,8 +25,8 @@ FrameSurfaces::FrameSurfaces(const pipeline::Frame& frame, const RayScene& scene
       shading_(frame, scene, rays) {
     for (const pipeline::Pass& pass : frame.passes)
         for (const std::uint32_t draw : pass.draws)
-            if (pass.kbuffer || pass.writes_depth())
-                roles_[draw] = {pass.kbuffer ? Role::layer : Role::opaque, pass.both_faces};
+            if (pass.runs_program() || pass.writes_depth())
+                roles_[draw] = {pass.runs_program() ? Role::layer : Role::opaque, pass.both_faces};
     for (const pipeline::Draw& draw : frame.draws)
         for (const glm::mat4& model : draw.instances)
             culling_.push_back(pipeline::culling_of(frame.resources->materials[draw.material].double_sided, model));

@@ -90,8 +90,9 @@ void reference_depth(benchmark::State& state) {
     frame.draws = scene.draws;
     pipeline::Pass pass;
     pass.states[0].depth = {true, true};
-    pass.colour = true;
+    pass.targets = {tests::colour_surface};
     frame.passes = {pass};
+    tests::bind_surfaces(frame);
     const std::vector<pipeline::FragmentStream> streams{
         pipeline::rasterize(scene.resources, scene.draws, scene.all_draws(), scene.view)};
     std::uint64_t fragments = 0;

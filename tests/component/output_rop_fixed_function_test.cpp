@@ -66,7 +66,7 @@ TEST(RopFixedFunction, DepthTestKeepsTheNearestAndTheFirstOfEqualOnes) {
     RopBench bench(pass);
     bench.run();
     EXPECT_EQ(bench.fixed.winner[0], 2U);
-    EXPECT_EQ(bench.fixed.depth[0], pipeline::depth_code(pass.context.depth_format, 0.25F));
+    EXPECT_EQ(bench.depth().depth, pipeline::depth_code(pass.context.depth_format, 0.25F));
     EXPECT_EQ(bench.fixed.winner[1], ~pipeline::QuadId{0}); // not covered
     EXPECT_EQ(bench.rop.stats().depth_passed, 2U);
     EXPECT_EQ(bench.rop.stats().depth_failed, 2U);
@@ -77,7 +77,7 @@ TEST(RopFixedFunction, OnlyWhatPassesMakesItsLineDirty) {
         DepthPass pass;
         pass.quad(0, 0, 15, 0.5F);
         RopBench bench(pass);
-        if (!passes) bench.fixed.depth.assign(bench.fixed.depth.size(), 0);
+        if (!passes) bench.set_depth(0.0F);
         bench.run();
         EXPECT_EQ(bench.request_cycles(MemoryClient::tile_write).size(), 0U);
         bench.write_back();
@@ -93,13 +93,13 @@ TEST(RopFixedFunction, OpaqueColourIsNotFetchedAndBlendedColourIs) {
         pass.quad(0, 0, 1);
         pass.stream.colours[0][0] = {0.25F, 0.5F, 0.0F, 1.0F};
         RopBench bench(pass);
-        bench.fixed.colour.assign(std::size_t{64} * 64, {0.5F, 0.0F, 0.0F, 0.0F});
+        bench.set_colour({0.5F, 0.0F, 0.0F, 0.0F});
         bench.run();
         EXPECT_EQ(bench.executed().first, opaque ? hit : miss);
         EXPECT_EQ(bench.request_cycles(MemoryClient::tile_read).size(), opaque ? 0U : 1U);
-        EXPECT_EQ(bench.fixed.colour[0].r, opaque ? 0.25F : 0.75F);
-        EXPECT_EQ(bench.fixed.colour[0].g, 0.5F);
-        EXPECT_EQ(bench.fixed.colour[1].r, 0.5F); // not covered
+        EXPECT_EQ(bench.colour().r, opaque ? 0.25F : 0.75F);
+        EXPECT_EQ(bench.colour().g, 0.5F);
+        EXPECT_EQ(bench.colour(1).r, 0.5F); // not covered
     }
 }
 
@@ -192,27 +192,27 @@ TEST(RopFixedFunction, PHY_P11_ClearedSectorIsNotFetchedAndItsFirstWriteBackWrit
     pass.quad(0, 0, 0b0001);
     pass.quad(4, 0, 0b0001);
     RopBench bench(pass);
-    bench.fixed.depth_clear.set(pass.context.layout);
-    bench.fixed.depth_clear.written(4);
-    const std::uint64_t before = bench.fixed.depth_clear.left();
+    bench.depth_clear.set(pass.context.layout);
+    bench.depth_clear.written(4);
+    const std::uint64_t before = bench.depth_clear.left();
     bench.run();
     EXPECT_EQ(bench.requested_lines(MemoryClient::tile_read), (Lines{4})); // the one that is in memory
     EXPECT_EQ(bench.executed().first, hit);
     bench.write_back();
     EXPECT_EQ(bench.requested_lines(MemoryClient::tile_write), (Lines{0, 4}));
-    EXPECT_FALSE(bench.fixed.depth_clear.cleared(0));
-    EXPECT_EQ(bench.fixed.depth_clear.left(), before - 1);
+    EXPECT_FALSE(bench.depth_clear.cleared(0));
+    EXPECT_EQ(bench.depth_clear.left(), before - 1);
 }
 
 TEST(RopFixedFunction, PHY_P11_ClearedSectorThatIsOnlyTestedStaysCleared) {
     DepthPass pass;
     pass.quad(0, 0, 15, 1.0F); // fails against the cleared depth
     RopBench bench(pass);
-    bench.fixed.depth_clear.set(pass.context.layout);
+    bench.depth_clear.set(pass.context.layout);
     bench.run();
     bench.write_back();
     EXPECT_TRUE(bench.memory.arrivals.empty());
-    EXPECT_TRUE(bench.fixed.depth_clear.cleared(0));
+    EXPECT_TRUE(bench.depth_clear.cleared(0));
 }
 
 // Half of the line's two sectors was written before, so its burst comes from memory.
@@ -220,8 +220,8 @@ TEST(RopFixedFunction, PHY_P11_LineOfWhichOneSectorIsClearedIsFetched) {
     DepthPass pass;
     pass.quad(2, 0);
     RopBench bench(pass);
-    bench.fixed.depth_clear.set(pass.context.layout);
-    bench.fixed.depth_clear.written(0);
+    bench.depth_clear.set(pass.context.layout);
+    bench.depth_clear.written(0);
     bench.run();
     EXPECT_EQ(bench.executed().first, miss);
     EXPECT_EQ(bench.memory.arrivals[0].request.bytes, 32U);

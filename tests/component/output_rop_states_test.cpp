@@ -37,12 +37,7 @@ struct StatePass : tests::QuadPass {
 };
 
 struct Bench : RopBench {
-    explicit Bench(const StatePass& pass, const tests::RopOptions& options = {}) : RopBench(pass, options) {
-        const std::size_t pixels = std::size_t{pass.stream.width} * pass.stream.height;
-        fixed.colour.assign(pixels, glm::vec4(0.0F));
-        fixed.stencil.assign(pixels, 0);
-        run();
-    }
+    explicit Bench(const StatePass& pass, const tests::RopOptions& options = {}) : RopBench(pass, options) { run(); }
 };
 
 RasterState masked(std::uint8_t mask) {
@@ -64,7 +59,7 @@ TEST(RopStates, WritesThatAreMaskedCostNothing) {
     EXPECT_EQ(bench.executed(), (std::pair<sim::Cycle, sim::Cycle>{hit, hit + 2}));
     bench.write_back();
     EXPECT_TRUE(bench.memory.arrivals.empty());
-    EXPECT_EQ(bench.fixed.colour[0], glm::vec4(0.0F));
+    EXPECT_EQ(bench.colour(), glm::vec4(0.0F));
 }
 
 TEST(RopStates, AMaskOfSomeChannelsNeedsTheStoredPixel) {
@@ -73,7 +68,7 @@ TEST(RopStates, AMaskOfSomeChannelsNeedsTheStoredPixel) {
     Bench bench(pass);
     EXPECT_EQ(bench.executed().first, miss);
     EXPECT_EQ(bench.requested_lines(MemoryClient::tile_read), (Lines{0}));
-    EXPECT_EQ(bench.fixed.colour[0], glm::vec4(1.0F, 0.0F, 1.0F, 0.0F));
+    EXPECT_EQ(bench.colour(), glm::vec4(1.0F, 0.0F, 1.0F, 0.0F));
 }
 
 TEST(RopStates, ALineOfStoresAloneIsFetchedWhenADrawBlendsWithIt) {
@@ -86,7 +81,7 @@ TEST(RopStates, ALineOfStoresAloneIsFetchedWhenADrawBlendsWithIt) {
     EXPECT_EQ(bench.request_cycles(MemoryClient::tile_read), (Cycles{2 * 10 + 2})); // admitted at 21, and once only
     EXPECT_EQ(bench.executed(0).second, 10 + hit);
     EXPECT_EQ(bench.executed(1).first, 2 * 10 + miss);
-    EXPECT_EQ(bench.fixed.colour[0], glm::vec4(204.0F / 255.0F));
+    EXPECT_EQ(bench.colour(), glm::vec4(204.0F / 255.0F));
     EXPECT_EQ(bench.rop.stats().colour_tiles.misses, 1U);
 }
 
@@ -105,7 +100,7 @@ TEST(RopStates, StencilIsTestedOnTheFaceThatShows) {
     pass.quad_of(0, glm::vec4(1.0F), false);
     pass.quad_of(1, glm::vec4(1.0F), true);
     Bench bench(pass);
-    EXPECT_EQ(bench.fixed.stencil[0], 0x01); // + 1, inverted in the upper half twice
+    EXPECT_EQ(bench.depth().stencil, 0x01); // + 1, inverted in the upper half twice
     EXPECT_EQ(bench.rop.stats().stencil_failed, 8U);
     EXPECT_EQ(bench.rop.stats().depth_passed, 4U);
     EXPECT_EQ(bench.requested_lines(MemoryClient::tile_read), (Lines{0})); // depth and stencil share the texel
@@ -134,7 +129,7 @@ TEST(RopStates, DepthBesideAStencilIsAPartOfItsTexel) {
         pass.quad_of(0, glm::vec4(1.0F));
         Bench bench(pass);
         EXPECT_EQ(bench.requested_lines(MemoryClient::tile_read).size(), stencil ? 1U : 0U);
-        EXPECT_EQ(bench.fixed.depth[0], pipeline::depth_code(pass.context.depth_format, 0.5F));
+        EXPECT_EQ(bench.depth().depth, pipeline::depth_code(pass.context.depth_format, 0.5F));
     }
 }
 

@@ -27,20 +27,24 @@ struct Bench {
 
 /// Tested against a depth surface of 0.5 everywhere.
 struct TestedPass : tests::QuadPass {
-    std::vector<pipeline::DepthCode> depth;
+    static constexpr pipeline::SurfaceFormat format = pipeline::SurfaceFormat::d24;
+    pipeline::SurfaceStore surfaces;
 
-    explicit TestedPass(pipeline::Compare compare = pipeline::Compare::less) : depth(surface_of(*this)) {
+    explicit TestedPass(pipeline::Compare compare = pipeline::Compare::less) : surfaces(surfaces_of(*this)) {
         pipeline::RasterState state;
         state.depth.test = true;
         state.depth.compare = compare;
         context.read_only_states = pipeline::DrawStates(state);
-        context.read_only_depth = &depth;
+        context.read_only_surfaces = &surfaces;
+        context.read_only_depth = 0;
     }
 
   private:
-    static std::vector<pipeline::DepthCode> surface_of(const tests::QuadPass& pass) {
-        return std::vector(std::size_t{pass.stream.width} * pass.stream.height,
-                           pipeline::depth_code(pass.context.read_only_format, 0.5F));
+    static pipeline::SurfaceStore surfaces_of(const tests::QuadPass& pass) {
+        pipeline::SurfaceInfo depth{
+            .name = "depth", .format = format, .width = pass.stream.width, .height = pass.stream.height};
+        pack_depth_stencil(format, {pipeline::depth_code(format, 0.5F), 0}, depth.cleared.data());
+        return pipeline::SurfaceStore(std::vector{depth});
     }
 };
 
@@ -89,7 +93,7 @@ TEST(EarlyDepthTest, ComparesAsTheDrawSays) {
 
 TEST(EarlyDepthTest, LooksAtEachPixelsOwnDepth) {
     TestedPass pass;
-    pass.depth[std::size_t{3} * pass.stream.width + 5] = pipeline::depth_code(pass.context.read_only_format, 0.1F);
+    pack_depth_stencil(pass.format, {pipeline::depth_code(pass.format, 0.1F), 0}, pass.surfaces.written(0, {5, 3, 0}));
     pass.quad(4, 2, 15, 0.25F);
     const Bench bench(pass, {});
     EXPECT_EQ(bench.sink.values().at(0).mask, 0b0111); // pixel 3 of the quad is (5, 3)

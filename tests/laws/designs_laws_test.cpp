@@ -219,7 +219,7 @@ void expect_conserved(const pipeline::Pass& pass, const pipeline::FragmentStream
     EXPECT_EQ(count("rop/depth_passed") + count("rop/depth_failed") + count("rop/stores") + count("rop/program_runs") +
                   count("rop/kept") + count("rop/not_kept") + count("rop/passed_over"),
               count("rop/fragments"));
-    if (!pass.kbuffer) {
+    if (!pass.runs_program()) {
         EXPECT_EQ(count("rop/stores") + count("rop/program_runs"), 0U);
     }
     for (const char* cache : {"depth_tiles", "colour_tiles", "kbuffer_tiles"}) {

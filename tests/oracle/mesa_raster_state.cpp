@@ -70,13 +70,14 @@ struct Frames {
         frame.opacity = 1.0F;
         pipeline::Pass pass;
         pass.draws = own.all_draws();
-        pass.colour = true;
+        pass.targets = {colour_surface};
         pass.states.clear();
         for (const MesaDraw& draw : draws) {
             pass.state_of_draw.push_back(static_cast<std::uint32_t>(pass.states.size()));
             pass.states.push_back(draw.state);
         }
         frame.passes = {pass};
+        bind_surfaces(frame);
         return pipeline::run_reference(frame, std::vector{stream});
     }
 };

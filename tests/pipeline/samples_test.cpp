@@ -161,6 +161,16 @@ TEST(Sampled, WithoutEdgesThePictureIsThatOfOneSample) {
     EXPECT_EQ(layers(1).reference.picture, layers(8).reference.picture);
 }
 
+namespace {
+
+pipeline::Frame with_one_sample(pipeline::Frame frame) {
+    frame.view.samples = 1;
+    for (pipeline::SurfaceInfo& surface : frame.surfaces) surface.planes = 1;
+    return frame;
+}
+
+} // namespace
+
 TEST(Sampled, ThePictureIsTheMeanOfThoseSeenThroughTheSamples) {
     // Corners on the sub-pixel grid and one colour for each triangle: moving the view is exact.
     std::vector<support::ScreenTriangle> triangles;
@@ -171,15 +181,14 @@ TEST(Sampled, ThePictureIsTheMeanOfThoseSeenThroughTheSamples) {
     Replay replay(support::screen_scene(triangles), {.width = 32, .height = 32, .samples = 8});
     std::vector<double> sum(replay.reference.picture.size());
     for (std::uint32_t sample = 0; sample < 8; ++sample) {
-        pipeline::Frame seen = replay.frame;
+        pipeline::Frame seen = with_one_sample(replay.frame);
         seen.view = pipeline::view_of_sample(replay.frame.view, sample);
         const auto picture = pipeline::run_reference(seen, pipeline::rasterize_frame(seen)).picture;
         ASSERT_EQ(picture.size(), sum.size());
         for (std::size_t at = 0; at < sum.size(); ++at) sum[at] += static_cast<double>(picture[at]) / 8;
     }
     const pipeline::ReferenceImage single = [&] {
-        pipeline::Frame frame = replay.frame;
-        frame.view.samples = 1;
+        const pipeline::Frame frame = with_one_sample(replay.frame);
         return pipeline::run_reference(frame, pipeline::rasterize_frame(frame));
     }();
     std::size_t smoothed = 0;

@@ -34,8 +34,8 @@ float visible(const Replay& replay, std::size_t pixel) { return replay.reference
 
 TEST(SoftShadows, LightAndEyeSeeTheSceneOnSurfacesOfTheirOwnSizes) {
     const Replay replay = shadows({"map_size=128"});
-    ASSERT_TRUE(replay.frame.kbuffer_view);
-    EXPECT_EQ(replay.frame.kbuffer_view->width, 128U);
+    ASSERT_TRUE(replay.frame.kbuffer_seen_from_elsewhere());
+    EXPECT_EQ(replay.frame.view_of_kbuffer().width, 128U);
     EXPECT_EQ(replay.reference.kbuffer.size(), 128U * 128U * 4U);
     EXPECT_EQ(replay.reference.depth.size(), 96U * 72U);
     EXPECT_EQ(replay.reference.picture.size(), 96U * 72U * 4U);

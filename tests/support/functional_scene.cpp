@@ -1,5 +1,7 @@
 #include "tests/support/functional_scene.hpp"
 
+#include "pipeline/functional/surface_texel.hpp"
+
 #include <algorithm>
 #include <cstring>
 #include <numeric>
@@ -80,6 +82,21 @@ pipeline::FragmentStream FunctionalScene::rasterize(const pipeline::FrontEndOpti
     resources.place();
     resources.validate("scene");
     return pipeline::rasterize(resources, draws, all_draws(), view, options);
+}
+
+void bind_surfaces(pipeline::Frame& frame) {
+    pipeline::SurfaceInfo depth{.name = "depth", .format = frame.depth_format};
+    pack_depth_stencil(depth.format, {farthest_depth(depth.format), 0}, depth.cleared.data());
+    pipeline::SurfaceInfo colour{.name = "colour", .format = frame.colour_format};
+    pack_colour(colour.format, frame.background, colour.cleared.data());
+    frame.surfaces = {depth, colour};
+    if (frame.program != nullptr) frame.surfaces.push_back({.name = "kbuffer", .program = frame.program});
+    for (pipeline::SurfaceInfo& surface : frame.surfaces) {
+        surface.width = frame.view.width;
+        surface.height = frame.view.height;
+        surface.planes = frame.view.samples;
+    }
+    for (pipeline::Pass& pass : frame.passes) pass.depth = pass.uses_depth() ? depth_surface : pipeline::no_surface;
 }
 
 pipeline::Buffer buffer_of(const void* data, std::size_t bytes) {

@@ -39,6 +39,12 @@ struct FunctionalScene {
     std::vector<std::uint32_t> all_draws() const;
 };
 
+/// Surfaces of frames that are put together by hand: the first two have the frame's formats and background, the third
+/// runs its program.
+enum FrameSurface : pipeline::SurfaceId { depth_surface, colour_surface, kbuffer_surface };
+/// Gives the frame these surfaces, of the size of its view, and depth to the passes whose states use it.
+void bind_surfaces(pipeline::Frame& frame);
+
 pipeline::Buffer buffer_of(const void* data, std::size_t bytes);
 template <class Element>
 pipeline::Buffer buffer_of(const std::vector<Element>& elements) {

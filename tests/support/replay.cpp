@@ -22,7 +22,7 @@ const pipeline::FragmentStream& Replay::kbuffer_stream() const {
     std::size_t next = 0;
     for (const pipeline::Pass& pass : frame.passes) {
         if (pass.kind != pipeline::PassKind::draw) continue;
-        if (pass.kbuffer) return streams[next];
+        if (pass.runs_program()) return streams[next];
         ++next;
     }
     CHECK_MSG(false, "the frame has no k-buffer pass");
@@ -46,7 +46,7 @@ TaskCounts count_tasks(const pipeline::FragmentStream& stream, bool multisampled
 
 bool multisampled(const Replay& replay, const pipeline::Pass& pass, const std::string& design) {
     if (replay.frame.view.samples == 1) return false;
-    if (!pass.kbuffer) return true;
+    if (!pass.runs_program()) return true;
     sim::Config config;
     return models::make_design(design, config)->plan(*replay.frame.program, replay.frame.view).works_per_sample();
 }

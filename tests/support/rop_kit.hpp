@@ -80,6 +80,8 @@ class RopBench {
     Rig rig;
     const QuadPass& pass;
     pipeline::KBufferPlan plan;
+    pipeline::SurfaceStore surfaces; ///< depth, cleared to 1, and colour, cleared to 0
+    pipeline::ClearBits depth_clear, colour_clear;
     pipeline::FixedSurfaces fixed;
     pipeline::ClearBits kbuffer_clear;
     pipeline::KBufferMemory kbuffer;
@@ -100,16 +102,15 @@ class RopBench {
         : rig(options.mode, 1, options.shuffle),
           pass(pass_),
           plan(plan_of(options)),
+          surfaces(surfaces_of(pass)),
           kbuffer(pass.context.layout, pass.program(),
                   options.shader && options.shader->visibility != pipeline::Visibility::rop_cache),
           history(pass.context.layout),
           payloads(slots, pass.program().floats_per_pixel()),
-          rop(rig.context("rop"), options.rop, pass.context, plan, surfaces(options), shape()),
+          rop(rig.context("rop"), options.rop, pass.context, plan, bound(options), shape()),
           source(rig.context("source"), prepared(tasks ? *tasks : pass.quad_tasks(), options), options.source),
           memory(rig.context("memory"), options.memory_latency, options.memory_way_back) {
-        const std::size_t pixels = std::size_t{pass.stream.width} * pass.stream.height;
-        fixed.depth.assign(pixels, pipeline::farthest_depth(pass.context.depth_format));
-        fixed.winner.assign(pixels, ~pipeline::QuadId{0});
+        fixed.winner.assign(std::size_t{pass.stream.width} * pass.stream.height, ~pipeline::QuadId{0});
         rop.begin_pass();
         sim::connect(source.out, rop.quads_in, {1, 1, 2});
         sim::connect(rop.memory_out[0], memory.requests_in, {1, 1, 64});
@@ -129,6 +130,20 @@ class RopBench {
     void write_back() {
         rop.write_back_all();
         run();
+    }
+
+    pipeline::DepthStencil depth(std::uint32_t x = 0, std::uint32_t row = 0) const {
+        return unpack_depth_stencil(pass.context.depth_format, surfaces.read(0, {x, row, 0}));
+    }
+    glm::vec4 colour(std::uint32_t x = 0, std::uint32_t row = 0) const {
+        return unpack_texel(pass.context.colour_format, surfaces.read(1, {x, row, 0}));
+    }
+    void set_depth(float depth) {
+        const pipeline::SurfaceFormat format = pass.context.depth_format;
+        fill(0, [&](std::byte* texel) { pack_depth_stencil(format, {depth_code(format, depth), 0}, texel); });
+    }
+    void set_colour(const glm::vec4& colour) {
+        fill(1, [&](std::byte* texel) { pack_colour(pass.context.colour_format, colour, texel); });
     }
 
     /// Cycles at which the first and the last quad of a draw were executed.
@@ -168,7 +183,27 @@ class RopBench {
         if (options.blender) plan.blender = *options.blender;
         return plan;
     }
-    pipeline::RopSurfaces surfaces(const RopOptions& options) {
+    static pipeline::SurfaceStore surfaces_of(const QuadPass& pass) {
+        const pipeline::SurfaceLayout& layout = pass.context.layout;
+        pipeline::SurfaceInfo depth{.name = "depth", .format = pass.context.depth_format};
+        pipeline::SurfaceInfo colour{.name = "colour", .format = pass.context.colour_format};
+        depth.width = colour.width = layout.width;
+        depth.height = colour.height = layout.height;
+        depth.planes = colour.planes = layout.samples;
+        pack_depth_stencil(depth.format, {farthest_depth(depth.format), 0}, depth.cleared.data());
+        return pipeline::SurfaceStore(std::vector{depth, colour});
+    }
+    template <class Pack>
+    void fill(pipeline::SurfaceId surface, Pack pack) {
+        for (std::uint32_t row = 0; row < surfaces.rows(surface); ++row)
+            for (std::uint32_t x = 0; x < pass.context.layout.width; ++x) pack(surfaces.written(surface, {x, row, 0}));
+    }
+    pipeline::RopSurfaces bound(const RopOptions& options) {
+        fixed.surfaces = &surfaces;
+        fixed.depth = 0;
+        if (pass.context.colour_write) fixed.targets = {1};
+        fixed.depth_clear = &depth_clear;
+        fixed.colour_clear = &colour_clear;
         return {&fixed,   options.shader || options.blender ? &kbuffer : nullptr,
                 &history, options.shader ? &payloads : nullptr,
                 nullptr,  &kbuffer_clear};

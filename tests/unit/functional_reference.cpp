@@ -79,6 +79,7 @@ struct FrameKit {
         frame.resources = std::make_shared<Resources>(scene.resources);
         frame.draws = scene.draws;
         frame.view = scene.view;
+        tests::bind_surfaces(frame);
         std::vector<FragmentStream> streams;
         for (const Pass& pass : frame.passes)
             if (pass.kind == PassKind::draw)
@@ -95,7 +96,7 @@ TEST(Reference, TheNearestFragmentWinsAndTheFirstOfEqualOnesStays) {
     kit.add_layer(0.75F, {1, 1, 0, 1});
     Pass& pass = kit.add_pass("opaque", {0, 1, 2, 3});
     pass.states[0].depth = {true, true};
-    pass.colour = true;
+    pass.targets = {tests::colour_surface};
     const ReferenceImage image = kit.run();
     ASSERT_EQ(image.depth.size(), 60U);
     for (std::size_t i = 0; i < 60; ++i) {
@@ -114,7 +115,7 @@ TEST(Reference, DepthsThatAreEqualInTheFormatAreEqual) {
         kit.add_layer(0.4F - 0x1p-20F, {0, 1, 0, 1});
         Pass& pass = kit.add_pass("opaque", {0, 1});
         pass.states[0].depth = {true, true};
-        pass.colour = true;
+        pass.targets = {tests::colour_surface};
         kit.frame.depth_format = format;
         EXPECT_EQ(kit.run().colour[0], format == SurfaceFormat::d16 ? 1.0F : 0.0F);
     }
@@ -125,7 +126,7 @@ TEST(Reference, UncoveredPixelsHaveBackgroundAndFarthestDepth) {
     kit.scene.add(tests::rectangle(0, 0, 2, 4));
     Pass& pass = kit.add_pass("opaque", {0});
     pass.states[0].depth = {true, true};
-    pass.colour = true;
+    pass.targets = {tests::colour_surface};
     kit.frame.background = glm::vec4(0.25F, 0.5F, 0.75F, 1.0F);
     const ReferenceImage image = kit.run();
     EXPECT_EQ(image.depth[3], 1.0F);
@@ -143,7 +144,7 @@ std::vector<float> add_random_layers(FrameKit& kit, std::uint32_t count, std::ui
         depths.push_back(static_cast<float>(random.uniform()));
         draws.push_back(kit.add_layer(depths.back(), {1, 1, 1, 1}));
     }
-    kit.add_pass("peel", draws).kbuffer = true;
+    kit.add_pass("peel", draws).kbuffer = tests::kbuffer_surface;
     kit.frame.program = std::make_shared<SmallestDepths>(k, 1);
     return depths;
 }
@@ -171,7 +172,7 @@ TEST(Reference, CountsAcceptedInsertions) {
             const float depth = 0.1F * static_cast<float>(front_to_back ? i : 9 - i);
             draws.push_back(kit.add_layer(depth, {1, 1, 1, 1}));
         }
-        kit.add_pass("peel", draws).kbuffer = true;
+        kit.add_pass("peel", draws).kbuffer = tests::kbuffer_surface;
         kit.frame.program = std::make_shared<SmallestDepths>(4, 1);
         EXPECT_EQ(kit.run().accepted_insertions, 64U * (front_to_back ? 4U : 9U));
     }
@@ -185,7 +186,7 @@ TEST(Reference, AReadOnlyDepthTestKeepsHiddenFragmentsOut) {
     Pass& opaque = kit.add_pass("opaque", {wall});
     opaque.states[0].depth = {true, true};
     Pass& peel = kit.add_pass("peel", {before, behind, wall});
-    peel.kbuffer = true;
+    peel.kbuffer = tests::kbuffer_surface;
     peel.states[0].depth = {true, false};
     kit.frame.program = std::make_shared<SmallestDepths>(4, 1);
     const ReferenceImage image = kit.run();
@@ -200,9 +201,11 @@ TEST(Reference, ClearPassesSetSurfacesBack) {
     const std::uint32_t layer = kit.add_layer(0.5F, {1, 0, 0, 1});
     Pass& first = kit.add_pass("first", {layer});
     first.states[0].depth = {true, true};
-    first.colour = first.kbuffer = true;
+    first.targets = {tests::colour_surface};
+    first.kbuffer = tests::kbuffer_surface;
     kit.frame.program = std::make_shared<SmallestDepths>(1, 1);
-    kit.add_pass("clear", PassKind::clear).writes = {"depth", "colour", "kbuffer"};
+    kit.add_pass("clear", PassKind::clear).clears = {tests::depth_surface, tests::colour_surface,
+                                                     tests::kbuffer_surface};
     const ReferenceImage image = kit.run();
     EXPECT_EQ(image.depth[0], 1.0F);
     EXPECT_EQ(image.colour[1], 1.0F); // the background is white
@@ -220,7 +223,7 @@ std::vector<float> survivors_of_stack(std::uint32_t count, QuadId delay, std::ui
         triangle.positions = {{-1, -1, depth}, {8, -1, depth}, {-1, 8, depth}};
         draws.push_back(kit.scene.add(triangle));
     }
-    kit.add_pass("peel", draws).kbuffer = true;
+    kit.add_pass("peel", draws).kbuffer = tests::kbuffer_surface;
     kit.frame.program = std::make_shared<SmallestDepths>(k, 1);
     const ReferenceImage image = kit.run(delay);
     std::vector<float> entries(image.kbuffer.begin(), image.kbuffer.begin() + k);
@@ -243,7 +246,7 @@ TEST(Reference, ConstantDistanceCountsReadsThatMissAPredecessor) {
     FrameKit kit(2, 2);
     std::vector<std::uint32_t> draws;
     for (int i = 0; i < 10; ++i) draws.push_back(kit.add_layer(0.5F, {1, 1, 1, 1}));
-    kit.add_pass("peel", draws).kbuffer = true;
+    kit.add_pass("peel", draws).kbuffer = tests::kbuffer_surface;
     kit.frame.program = std::make_shared<SmallestDepths>(4, 1);
     // A layer is two quads, one per triangle of the rectangle: a pixel's fragments are about two quads apart.
     EXPECT_EQ(kit.run(1).missed_reads, 0U);
@@ -277,7 +280,7 @@ TEST(Composite, IsFrontToBackWithUniformOpacity) {
     FrameKit kit(4, 4);
     const glm::vec4 near(1, 0, 0, 1), far(0, 1, 0, 1);
     const std::uint32_t back = kit.add_layer(0.75F, far), front = kit.add_layer(0.25F, near);
-    kit.add_pass("peel", {back, front}).kbuffer = true;
+    kit.add_pass("peel", {back, front}).kbuffer = tests::kbuffer_surface;
     kit.add_pass("resolve", PassKind::resolve);
     kit.frame.program = std::make_shared<SmallestDepths>(4, 4);
     kit.frame.opacity = 0.25F;
@@ -295,8 +298,8 @@ TEST(Composite, OpaqueSurfacesAreTheBackground) {
     const std::uint32_t wall = kit.add_layer(0.5F, {0, 1, 0, 1}), glass = kit.add_layer(0.25F, {1, 0, 0, 1});
     Pass& opaque = kit.add_pass("opaque", {wall});
     opaque.states[0].depth = {true, true};
-    opaque.colour = true;
-    kit.add_pass("peel", {glass}).kbuffer = true;
+    opaque.targets = {tests::colour_surface};
+    kit.add_pass("peel", {glass}).kbuffer = tests::kbuffer_surface;
     kit.add_pass("resolve", PassKind::resolve);
     kit.frame.program = std::make_shared<SmallestDepths>(2, 4);
     const ReferenceImage image = kit.run();

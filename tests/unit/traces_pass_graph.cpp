@@ -66,6 +66,12 @@ Frame empty_frame() {
     return frame;
 }
 
+Names surface_names(const Frame& frame, const std::vector<pipeline::SurfaceId>& surfaces) {
+    Names names;
+    for (const pipeline::SurfaceId surface : surfaces) names.push_back(frame.surfaces.at(surface).name);
+    return names;
+}
+
 TEST(PassGraph, PassesNobodyReadsAreCulled) {
     traces::PassGraph graph(empty_frame());
     graph.add_clear("clear", {"depth", "colour"});
@@ -76,7 +82,7 @@ TEST(PassGraph, PassesNobodyReadsAreCulled) {
     graph.output("colour");
     const Frame frame = graph.lower();
     EXPECT_EQ(pass_names(frame), (Names{"clear", "clear again", "picture"}));
-    EXPECT_EQ(frame.passes[0].writes, Names{"colour"});
+    EXPECT_EQ(surface_names(frame, frame.passes[0].clears), Names{"colour"});
     EXPECT_EQ(frame.left_out[0].unit, "pass shadow");
     EXPECT_EQ(frame.left_out[0].reason, "nobody reads depth");
     EXPECT_EQ(frame.left_out[1].unit, "pass afterwards");
@@ -111,7 +117,7 @@ TEST(PassGraph, WritesNobodyReadsAreDropped) {
     graph.add_draw("both", {}, {"depth", "colour"}, {0});
     graph.output("depth");
     const Frame frame = graph.lower();
-    EXPECT_FALSE(frame.passes[0].colour);
+    EXPECT_FALSE(frame.passes[0].writes_colour());
     EXPECT_FALSE(frame.needs.colours);
     EXPECT_FALSE(frame.needs.normals);
     EXPECT_EQ(frame.left_out[0].unit, "colour of pass both");
@@ -121,7 +127,7 @@ TEST(Workloads, TransparencyDrawsEverythingIntoTheKBuffer) {
     const Frame frame = frame_with({});
     EXPECT_EQ(pass_names(frame), (Names{"clear k-buffer", "geometry", "resolve"}));
     EXPECT_EQ(frame.passes[1].draws, (std::vector<std::uint32_t>{0, 1, 2}));
-    EXPECT_TRUE(frame.passes[1].kbuffer);
+    EXPECT_TRUE(frame.passes[1].runs_program());
     EXPECT_FALSE(frame.passes[1].states[0].depth.test);
     EXPECT_TRUE(frame.passes[1].both_faces);
     ASSERT_NE(frame.program, nullptr);
@@ -154,16 +160,16 @@ TEST(Workloads, TransparentMaterialsLieBehindOpaqueOnes) {
     EXPECT_EQ(pass_names(frame), (Names{"clear", "opaque", "clear k-buffer", "geometry", "resolve"}));
     EXPECT_EQ(frame.passes[1].draws, (std::vector<std::uint32_t>{0, 1}));
     EXPECT_TRUE(frame.passes[1].states[0].depth.test && frame.passes[1].states[0].depth.write &&
-                frame.passes[1].colour);
+                frame.passes[1].writes_colour());
     EXPECT_EQ(frame.passes[3].draws, (std::vector<std::uint32_t>{2}));
-    EXPECT_TRUE(frame.passes[3].states[0].depth.test && frame.passes[3].kbuffer);
+    EXPECT_TRUE(frame.passes[3].states[0].depth.test && frame.passes[3].runs_program());
     EXPECT_FALSE(frame.passes[3].states[0].depth.write);
     EXPECT_TRUE(frame.needs.depth && frame.needs.early_depth && frame.needs.colour_surface && frame.needs.kbuffer);
 }
 
 TEST(Workloads, OpaqueColoursAreNotWrittenWhenLayersAreDepths) {
     const Frame frame = frame_with({"transparent=materials", "entry=z"});
-    EXPECT_FALSE(frame.passes[1].colour);
+    EXPECT_FALSE(frame.passes[1].writes_colour());
     EXPECT_FALSE(frame.needs.colour_surface);
     EXPECT_NE(std::find(left_out(frame).begin(), left_out(frame).end(), "colour of pass opaque: nobody reads it"),
               left_out(frame).end());
@@ -192,7 +198,7 @@ TEST(Workloads, GeometryIsOnePassOfDepthsThatReadsAllAttributesOrPositions) {
     const Frame all = frame_with({}, "geometry");
     EXPECT_EQ(pass_names(all), (Names{"clear", "geometry"}));
     EXPECT_TRUE(all.passes[1].states[0].depth.test && all.passes[1].states[0].depth.write);
-    EXPECT_TRUE(all.passes[1].colour && !all.passes[1].kbuffer);
+    EXPECT_TRUE(all.passes[1].writes_colour() && !all.passes[1].runs_program());
     EXPECT_TRUE(all.needs.colours && all.needs.colour_surface);
     EXPECT_EQ(all.needs.fragment_colour, pipeline::FragmentColour::flat);
     EXPECT_FALSE(all.needs.normals || all.needs.vertex_colours || all.needs.textures || all.needs.alpha_test);

@@ -295,7 +295,6 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const Soft
                 fmt::format("format rgba16f cannot hold the scene, rgba32f is taken in its place: {}", *reason));
         }
     frame.program = models::make_nearest_k(models::EntryKind::z, params.k);
-    frame.kbuffer_view = light.view(params.map_size);
     const auto picture = std::make_shared<const ShadowPicture>(light, params);
     frame.resolve = picture;
     frame.depth_format = pipeline::SurfaceFormat::d32f;
@@ -316,6 +315,7 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const Soft
     PassGraph graph(std::move(frame));
     graph.add_clear("clear k-buffer", {kbuffer_surface});
     graph.add_draw("light", {}, {kbuffer_surface}, std::move(from_light), true);
+    graph.see_from(light.view(params.map_size));
     graph.add_clear("clear", {depth_surface, colour_surface});
     graph.add_draw("eye", {depth_surface}, {depth_surface, colour_surface}, std::move(eye));
     graph.write_targets(2); // colours, and positions
@@ -347,7 +347,7 @@ std::vector<std::vector<std::string>> hard_shadows(const Scene& scene, const pip
     as_text(options, "light");
     const auto params = read_parameters<SoftShadowParams>(options.values, place);
     const SquareLight light = make_area_light(scene, params.light, params.light_size, place).square();
-    const glm::dvec3 forward = -glm::dvec3(glm::inverse(glm::dmat4(frame.kbuffer_view->view))[2]);
+    const glm::dvec3 forward = -glm::dvec3(glm::inverse(glm::dmat4(frame.view_of_kbuffer().view))[2]);
     std::vector<std::string> shared{"method=hard", "light_size=0", "layers=1", "k=2"};
     for (const char* key : {"map_size", "format", "bias", "uniform_bias", "gscale", "gmax"}) // what one layer knows
         if (const auto value = options.values->find(key); value != options.values->end())

@@ -10,6 +10,7 @@
 #include "sim/check.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace cli {
 

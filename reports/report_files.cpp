@@ -4,6 +4,7 @@
 #include "reports/csv.hpp"
 #include "reports/html/page.hpp"
 #include "reports/images.hpp"
+#include "reports/numbers.hpp"
 #include "reports/picture_files.hpp"
 #include "reports/result.hpp"
 #include "sim/check.hpp"

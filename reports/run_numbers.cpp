@@ -1,5 +1,7 @@
 #include "reports/run_numbers.hpp"
 
+#include "reports/numbers.hpp"
+
 #include <algorithm>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

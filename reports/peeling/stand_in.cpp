@@ -1,6 +1,7 @@
 #include "reports/peeling/stand_in.hpp"
 
 #include "reports/comparison.hpp"
+#include "reports/geometry/laboratory.hpp"
 #include "sim/check.hpp"
 #include "traces/loads.hpp"
 

@@ -105,7 +105,9 @@ TEST(PhysicsReports, PHY_N5_JsonCsvAndPageAgree) {
                                                               {"incoherence", "/hazards/incoherence"},
                                                               {"wrong pixels", "/wrong_pixels"},
                                                               {"lost updates", "/lost_updates"}}) {
-            const auto named = [&](const std::string& title) { return title.substr(0, title.find(" [")) == column; };
+            const auto named = [&column = column](const std::string& title) {
+                return title.substr(0, title.find(" [")) == column;
+            };
             const auto found = std::find_if(table.header.begin(), table.header.end(), named);
             ASSERT_NE(found, table.header.end()) << column;
             const std::string& cell = table.rows[design][static_cast<std::size_t>(found - table.header.begin())];

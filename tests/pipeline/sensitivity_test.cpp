@@ -81,8 +81,8 @@ TEST(SensitivityRuns, EveryStepIsTheComparisonWithThatSetting) {
         request.gpu_settings = {path + "=" + value};
         const auto comparison = reports::compare(reports::prepare(request));
         const auto& all = parameter(measured(), path).steps;
-        const auto step =
-            std::find_if(all.begin(), all.end(), [&value](const SensitivityStep& one) { return one.value == value; });
+        const auto step = std::find_if(all.begin(), all.end(),
+                                       [&value = value](const SensitivityStep& one) { return one.value == value; });
         ASSERT_NE(step, all.end()) << path;
         ASSERT_EQ(step->runs.size(), comparison.runs.size());
         for (std::size_t i = 0; i < step->runs.size(); ++i) {

@@ -183,6 +183,8 @@ TEST(VertexFormats, DefaultsAreWhatTheyWere) {
     const std::string four = "gen:blob?triangles=500&attributes=";
     EXPECT_NE(traces::load_scene(four + "texcoord:4f32").hash, traces::load_scene(four + "generic:4f32").hash);
     EXPECT_EQ(traces::load_scene("gen:grass?blades=1000").hash, "733427ee4dc35df1");
+    EXPECT_EQ(traces::load_scene("gen:grid-soup?boxes=60").hash, "bbf24c329b8c52f4");
+    EXPECT_EQ(traces::load_scene("gen:particles").hash, "0c2a7a1e9e950e53");
     EXPECT_EQ(traces::load_scene("gen:blob?triangles=2000").hash, "518260ed01aa392d");
     EXPECT_EQ(traces::load_scene("gen:blob?triangles=2000&order=random").hash, "d1b3715feca23ef2");
 }

@@ -2,6 +2,7 @@
 //
 // A blade is an indexed ribbon: 7 vertices, 5 triangles, 15 indices. No vertex is shared between blades.
 #include "traces/generators/mesh.hpp"
+#include "traces/generators/random_point.hpp"
 #include "traces/generators/table.hpp"
 
 #include <algorithm>
@@ -46,7 +47,7 @@ struct Blade {
 
 Blade random_blade(sim::Random& random, const glm::dvec2& cell) {
     Blade blade;
-    blade.root = (cell + glm::dvec2(random.uniform(), random.uniform())) / blades_per_metre;
+    blade.root = (cell + random_in_square(random)) / blades_per_metre;
     blade.direction = random.uniform() * 2.0 * std::numbers::pi;
     blade.height = 0.2 + 0.25 * random.uniform();
     blade.bend = blade.height * (0.2 + 0.6 * random.uniform());

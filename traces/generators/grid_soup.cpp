@@ -1,6 +1,7 @@
 // Boxes in a grid, turned and stretched at random: a stand-in for architectural scenes of many parts with high depth
 // complexity, such as the power plant of 12.7 M triangles (specification 004, section 9.7).
 #include "traces/generators/mesh.hpp"
+#include "traces/generators/random_point.hpp"
 #include "traces/generators/table.hpp"
 
 #include <algorithm>
@@ -33,7 +34,7 @@ void add_box(Mesh& mesh, const glm::dvec3& centre, sim::Random& random) {
     const double angle = random.uniform() * 0.5 * std::numbers::pi;
     const double c = std::cos(angle), s = std::sin(angle);
     // One long side: beams and pipes rather than cubes.
-    glm::dvec3 half(0.05 + 0.1 * random.uniform(), 0.05 + 0.1 * random.uniform(), 0.05 + 0.1 * random.uniform());
+    glm::dvec3 half = 0.05 + 0.1 * random_in_cube(random);
     half[static_cast<int>(random.below(3))] = 0.4 + 0.5 * random.uniform();
     for (unsigned i = 0; i < vertices_per_box; ++i) {
         const double x = (i & 1U) != 0 ? half.x : -half.x, y = (i & 2U) != 0 ? half.y : -half.y;
@@ -52,7 +53,7 @@ Scene build(const GridSoupParams& params) {
     mesh.name = "boxes";
     for (std::uint32_t i = 0; i < params.boxes; ++i) {
         const glm::dvec3 cell(i % side, i / side % side, i / side / side);
-        add_box(mesh, cell + glm::dvec3(random.uniform(), random.uniform(), random.uniform()), random);
+        add_box(mesh, cell + random_in_cube(random), random);
     }
     const std::uint32_t per_draw = std::min(params.boxes_per_draw, params.boxes);
     Scene scene = scene_of_material("boxes", {0.6F, 0.6F, 0.65F, 1.0F});

@@ -2,6 +2,7 @@
 //
 // The workload `particles` draws every vertex as a sprite. For all other workloads three points in a row are a
 // triangle.
+#include "traces/generators/random_point.hpp"
 #include "traces/generators/table.hpp"
 #include "traces/tetrahedra/tetrahedral_mesh.hpp"
 
@@ -33,8 +34,7 @@ static_assert(sim::fully_described<ParticlesParams>);
 
 glm::dvec3 point_in_ball(sim::Random& random) {
     for (;;) {
-        const glm::dvec3 point(2.0 * random.uniform() - 1.0, 2.0 * random.uniform() - 1.0,
-                               2.0 * random.uniform() - 1.0);
+        const glm::dvec3 point = 2.0 * random_in_cube(random) - 1.0;
         if (glm::dot(point, point) <= 1.0) return point;
     }
 }

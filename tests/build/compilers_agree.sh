@@ -8,7 +8,10 @@ trap 'rm -rf "$work"' EXIT
 
 # A result may differ in `host` (seconds) and in what it says about the build.
 result() {
-    "$1/bin/ropsim" compare gen:discs --size 128x128 --json >"$work/raw.json" || { echo "$1/bin/ropsim failed" >&2; exit 1; }
+    for scene in gen:discs gen:grass?blades=200 gen:grid-soup?boxes=40; do result_of "$1" "$scene"; done
+}
+result_of() {
+    "$1/bin/ropsim" compare "$2" --size 128x128 --json >"$work/raw.json" || { echo "$1/bin/ropsim failed" >&2; exit 1; }
     python3 -c 'import json, sys
 document = json.load(sys.stdin)
 document.pop("host")

@@ -1,4 +1,4 @@
-// Random points whose coordinates are drawn in a fixed order, which that of a call's arguments is not: compilers differ.
+// Random points whose coordinates are drawn in a fixed order, as that of a call's arguments is left to compilers.
 #pragma once
 
 #include "sim/random.hpp"

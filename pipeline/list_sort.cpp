@@ -108,7 +108,9 @@ class ListSortShader final : public ScreenShader {
     // The heads lie block by block.
     std::uint32_t fetches(std::uint32_t x, std::uint32_t y) const override {
         const std::uint64_t first = heads(x, y);
-        return static_cast<std::uint32_t>((first + 4 * site_.head_bytes - 1) / segment_line - first / segment_line) + 1;
+        return static_cast<std::uint32_t>((first + std::uint64_t{4} * site_.head_bytes - 1) / segment_line -
+                                          first / segment_line) +
+               1;
     }
     std::uint64_t line(std::uint32_t x, std::uint32_t y, std::uint32_t fetch) const override {
         return heads(x, y) / segment_line + fetch;
@@ -131,7 +133,8 @@ class ListSortShader final : public ScreenShader {
         } else if (site_.chained) {
             load_nodes(x, y, number, segments);
         } else {
-            const std::uint64_t bytes = 4 * site_.fragment_bytes, samples = site_.per_pixel * site_.passes;
+            const std::uint64_t bytes = std::uint64_t{4} * site_.fragment_bytes;
+            const std::uint64_t samples = std::uint64_t{site_.per_pixel} * site_.passes;
             add_access(segments, samples_address + block * samples * bytes, quad.longest * bytes, false);
         }
     }

@@ -30,7 +30,7 @@ nlohmann::ordered_json changed_parameters(const pipeline::GpuParams& own, const 
 
 ComparedDesign read_design(const DesignVariant& variant, sim::Config config, const pipeline::GpuParams& shared) {
     for (const auto& [path, value] : variant.settings)
-        config.set(path + "=" + value, fmt::format("design '{}'", variant.text));
+        config.set(fmt::format("{}={}", path, value), fmt::format("design '{}'", variant.text));
     ComparedDesign row;
     row.variant = variant;
     config.read("", row.gpu);

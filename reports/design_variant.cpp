@@ -77,8 +77,8 @@ std::string DesignVariant::label() const {
 void DesignVariant::replace(const std::string& path, const std::string& value) {
     for (auto& [own, old] : settings) {
         if (own != path) continue;
-        const std::string before = path + "=" + old;
-        text.replace(text.find(before), before.size(), path + "=" + value);
+        const std::string before = fmt::format("{}={}", path, old);
+        text.replace(text.find(before), before.size(), fmt::format("{}={}", path, value));
         old = value;
     }
 }

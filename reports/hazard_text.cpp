@@ -6,7 +6,6 @@
 
 namespace reports {
 
-using pipeline::HazardCounts;
 using pipeline::HazardKind;
 
 namespace {

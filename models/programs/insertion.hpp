@@ -15,7 +15,7 @@ struct Insertion {
     /// Exchanges `left`, at first the fragment, with the entries that it is nearer than; `left` is what falls out at
     /// the end. Returns whether the entries changed.
     static bool exchange(float* pixel, std::uint32_t k, Entry& left) {
-        float* const end = pixel + k * floats;
+        float* const end = pixel + std::size_t{k} * floats;
         float* entry = pixel;
         while (entry != end && !(left[slot] < entry[slot])) entry += floats;
         if (entry == end) return false;

@@ -36,7 +36,7 @@ class Mlab final : public pipeline::ModifyProgram {
         Pass::Entry left;
         std::copy_n(fragment, floats, left.begin());
         Pass::exchange(pixel, k(), left);
-        float* last = pixel + (k() - 1) * floats;
+        float* last = pixel + std::size_t{k() - 1} * floats;
         for (std::uint32_t channel = 0; channel < 3; ++channel)
             last[channel] = finite(last[channel] + last[transmittance] * left[channel]);
         last[transmittance] *= left[transmittance];

@@ -41,7 +41,7 @@ class OrderAndBlend final : public pipeline::ModifyProgram {
     bool drains() const override { return true; }
     void drain(float* pixel) const override {
         for (std::uint32_t i = 0; i < k(); ++i) {
-            float* entry = pixel + i * floats;
+            float* entry = pixel + std::size_t{i} * floats;
             composite(state(pixel), entry);
             std::fill_n(entry, slot, 0.0F);
             entry[slot] = sentinel_depth;
@@ -52,7 +52,7 @@ class OrderAndBlend final : public pipeline::ModifyProgram {
     static constexpr std::uint32_t floats = 4, slot = 3;
     using Sort = NearlySorted<floats, slot>;
 
-    float* state(float* pixel) const { return pixel + k() * floats; }
+    float* state(float* pixel) const { return pixel + std::size_t{k()} * floats; }
 
     void composite(float* state, const float* entry) const {
         if (!(entry[slot] > sentinel_depth)) return;

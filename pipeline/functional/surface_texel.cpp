@@ -56,11 +56,13 @@ float small_float_value(std::uint32_t code, unsigned fraction_bits) {
 }
 
 void pack_halves(const glm::vec4& colour, int channels, std::byte* target) {
-    for (int i = 0; i < channels; ++i) store(target + 2 * i, float_to_half(saturated(colour[i], 65504.0F)));
+    for (int i = 0; i < channels; ++i)
+        store(target + std::ptrdiff_t{2} * i, float_to_half(saturated(colour[i], 65504.0F)));
 }
 
 void pack_floats(const glm::vec4& colour, int channels, std::byte* target) {
-    for (int i = 0; i < channels; ++i) store(target + 4 * i, saturated(colour[i], std::numeric_limits<float>::max()));
+    for (int i = 0; i < channels; ++i)
+        store(target + std::ptrdiff_t{4} * i, saturated(colour[i], std::numeric_limits<float>::max()));
 }
 
 constexpr double steps_of(SurfaceFormat format) { return format == SurfaceFormat::d16 ? 65535.0 : 16777215.0; }
@@ -130,16 +132,18 @@ glm::vec4 unpack_texel(SurfaceFormat format, const std::byte* source) {
     case SurfaceFormat::r16f:
     case SurfaceFormat::rg16f:
     case SurfaceFormat::rgba16f:
-        for (int i = 0; i < channels; ++i) colour[i] = half_to_float(load<std::uint16_t>(source + 2 * i));
+        for (int i = 0; i < channels; ++i)
+            colour[i] = half_to_float(load<std::uint16_t>(source + std::ptrdiff_t{2} * i));
         break;
     case SurfaceFormat::r32f:
     case SurfaceFormat::rg32f:
     case SurfaceFormat::rgba32f:
-        for (int i = 0; i < channels; ++i) colour[i] = load<float>(source + 4 * i);
+        for (int i = 0; i < channels; ++i) colour[i] = load<float>(source + std::ptrdiff_t{4} * i);
         break;
     case SurfaceFormat::r32u:
     case SurfaceFormat::rg32u:
-        for (int i = 0; i < channels; ++i) colour[i] = static_cast<float>(load<std::uint32_t>(source + 4 * i));
+        for (int i = 0; i < channels; ++i)
+            colour[i] = static_cast<float>(load<std::uint32_t>(source + std::ptrdiff_t{4} * i));
         break;
     case SurfaceFormat::s8:
         colour.r = static_cast<float>(source[0]);
@@ -162,13 +166,13 @@ glm::vec4 through_format(SurfaceFormat format, const glm::vec4& colour) {
 
 void pack_integers(SurfaceFormat format, const glm::uvec2& values, std::byte* target) {
     CHECK(info_of(format).kind == ChannelKind::integer);
-    for (int i = 0; i < info_of(format).channels; ++i) store(target + 4 * i, values[i]);
+    for (int i = 0; i < info_of(format).channels; ++i) store(target + std::ptrdiff_t{4} * i, values[i]);
 }
 
 glm::uvec2 unpack_integers(SurfaceFormat format, const std::byte* source) {
     CHECK(info_of(format).kind == ChannelKind::integer);
     glm::uvec2 values(0U);
-    for (int i = 0; i < info_of(format).channels; ++i) values[i] = load<std::uint32_t>(source + 4 * i);
+    for (int i = 0; i < info_of(format).channels; ++i) values[i] = load<std::uint32_t>(source + std::ptrdiff_t{4} * i);
     return values;
 }
 

@@ -97,6 +97,7 @@ class Curves {
   private:
     struct Cell {
         std::string study, series, x;
+        // NOLINTNEXTLINE(modernize-use-nullptr): the 0 that a comparison of three ways is held against
         friend auto operator<=>(const Cell&, const Cell&) = default;
     };
 

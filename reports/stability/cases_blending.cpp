@@ -234,11 +234,11 @@ void add_many_layers(std::vector<Case>& cases) {
             if (nodes) { // composite the nodes: premultiplied colour, transmittance
                 double left = 1.0;
                 for (std::uint32_t i = 0; i < program->k(); ++i) {
-                    red += left * static_cast<double>(pixel[i * 5]);
+                    red += left * static_cast<double>(pixel[std::size_t{i} * 5]);
                     left *= static_cast<double>(pixel[i * 5 + 3]);
                 }
             } else {
-                red = static_cast<double>(pixel[program->k() * 4]);
+                red = static_cast<double>(pixel[std::size_t{program->k()} * 4]);
             }
             const Quad exact = Quad(0.25F) * (1 - through);
             finding.error((red - static_cast<double>(exact)) / (opacity == 0.0F ? 1.0 : bound_per_layer));

@@ -235,7 +235,7 @@ void add_program_doors(std::vector<Case>& cases) {
                          "NaN and infinity as scalar, colour and extinction of a transfer function; scalars that span "
                          "more than the floats",
                          "refused, with the point", [](Finding& finding) {
-                             const auto table = [](models::TransferFunction transfer) {
+                             const auto table = [](const models::TransferFunction& transfer) {
                                  return [transfer] { const models::PreintegratedTable made(transfer, 1.0F, 4, 4); };
                              };
                              for (const float bad : bad_values) {

@@ -82,7 +82,8 @@ void add_small_frames(std::vector<Case>& cases) {
                      "100 triangles, no quad, every design ends", "pixels", 0.0, [](Finding& finding) {
                          std::vector<ScreenTriangle> triangles;
                          for (int i = 0; i < 100; ++i) {
-                             const auto x = static_cast<float>(i % 10), y = static_cast<float>(i / 10);
+                             const int row = i / 10;
+                             const auto x = static_cast<float>(i % 10), y = static_cast<float>(row);
                              triangles.push_back(
                                  {{x + 0.6F, y + 0.6F, 0.5F}, {x + 0.6F, y + 0.9F, 0.5F}, {x + 0.9F, y + 0.6F, 0.5F}});
                          }

@@ -189,7 +189,8 @@ Streamed stream_of_groups(std::uint32_t k, std::uint32_t places) {
     }
     while (!queue.empty()) pop();
     const auto pixel = pixel_after(*program, moved);
-    const std::vector<float> state(pixel.begin() + k * 4, pixel.begin() + k * 4 + 4);
+    const auto behind = pixel.begin() + std::ptrdiff_t{k} * 4;
+    const std::vector<float> state(behind, behind + 4);
     return {state == composite(popped), state == composite(sorted)};
 }
 
@@ -257,7 +258,8 @@ void stack_survivors(Finding& finding, std::uint32_t distance) {
     const auto image = pipeline::run_reference(replay.frame, replay.streams, distance, 1);
     std::size_t kept = 0;
     for (std::size_t i = 0; i < 64; ++i) kept += image.kbuffer[i] <= 1.0F ? 1 : 0;
-    finding.error(static_cast<double>(kept) - (63 / distance + 1));
+    const std::uint32_t expected = 63 / distance + 1;
+    finding.error(static_cast<double>(kept) - expected);
 }
 
 void add_hazards(std::vector<Case>& cases) {
@@ -297,7 +299,7 @@ std::vector<bool> csg_parity(std::uint32_t k) {
     const auto pixel = pixel_after(*program, {{0.4F, 0}, {0.3F, 1}, {0.2F, 1}, {0.1F, 0}});
     std::vector<bool> holds;
     for (std::uint32_t i = 0; i < k; ++i)
-        if (pixel[i * 2] != models::empty_depth)
+        if (pixel[std::size_t{i} * 2] != models::empty_depth)
             holds.push_back(walk.cross(static_cast<std::uint32_t>(pixel[i * 2 + 1])));
     return holds;
 }

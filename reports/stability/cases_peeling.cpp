@@ -238,7 +238,7 @@ void add_z_fighting(std::vector<Case>& cases) {
                                                       plane(part[2].x, part[2].y)});
                              traces::Scene scene = screen_scene(triangles);
                              const pipeline::FragmentStream stream = rasterized(scene, pixel_view(64, 64));
-                             std::vector<float> depths(64 * 64, -1.0F);
+                             std::vector<float> depths(std::size_t{64} * 64, -1.0F);
                              for (std::size_t i = 0; i < stream.quads.size(); ++i)
                                  for (std::size_t lane = 0; lane < 4; ++lane)
                                      if ((stream.quads[i].covered >> lane & 1U) != 0)

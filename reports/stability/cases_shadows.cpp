@@ -127,7 +127,7 @@ void add_half_bias(std::vector<Case>& cases) {
 }
 
 void add_layers(std::vector<Case>& cases) {
-    const auto bias_of = [](std::vector<Layer> layers, std::uint32_t layer, ShadowFormat format) {
+    const auto bias_of = [](const std::vector<Layer>& layers, std::uint32_t layer, ShadowFormat format) {
         return static_cast<double>(
             map_of(unit_light(), {.resolution = 2, .layers = 4, .format = format}, layers).bias(layer, 0, 0));
     };

@@ -39,7 +39,7 @@ inline ShadowMap map_of(const AreaLight& light, ShadowMapOptions options, const 
     const std::uint32_t r = options.resolution;
     options.captured = static_cast<std::uint32_t>(layers.size());
     options.layers = std::min(options.layers, options.captured);
-    const std::size_t floats = (options.captured + 3) / 4 * 4;
+    const std::size_t floats = std::size_t{options.captured + 3} / 4 * 4;
     std::vector<float> kbuffer(std::size_t{r} * r * floats, 2.0F);
     const pipeline::EyeDepth depth(light.view(r).projection);
     for (std::uint32_t y = 0; y < r; ++y)

@@ -60,7 +60,8 @@ void add_blade(Mesh& mesh, const Blade& blade) {
     const glm::dvec3 lean(std::cos(blade.direction), 0.0, std::sin(blade.direction));
     const glm::dvec3 side(-lean.z, 0.0, lean.x);
     for (std::uint32_t i = 0; i < vertices_per_blade; ++i) {
-        const double t = (i / 2) / 3.0; // two vertices a third of the height, then the tip
+        const std::uint32_t third = i / 2; // of the height: two vertices each, then the tip
+        const double t = third / 3.0;
         const double half = 0.5 * blade.width * (1.0 - t);
         const glm::dvec3 along = lean * (2.0 * blade.bend * t) + glm::dvec3(0.0, blade.height, 0.0);
         const glm::dvec3 middle =

@@ -38,9 +38,9 @@ void add_plane(Mesh& mesh, const PlanesParams& params, std::size_t number) {
         for (std::uint32_t x = 0; x < params.checks; ++x) {
             const auto first = static_cast<std::uint32_t>(mesh.positions.size());
             for (const std::uint32_t corner : {0U, 1U, 2U, 3U}) {
+                const std::uint32_t column = x + corner % 2, row = y + corner / 2;
                 mesh.positions.emplace_back(
-                    glm::vec3(glm::dvec3(left + (x + corner % 2) * step,
-                                         (y + corner / 2) * step - share_of_view * height / 2.0, -distance)));
+                    glm::vec3(glm::dvec3(left + column * step, row * step - share_of_view * height / 2.0, -distance)));
                 mesh.colours.push_back((x + y) % 2 == 0 ? colours[number] : light);
             }
             for (const std::uint32_t corner : {0U, 1U, 2U, 2U, 1U, 3U}) mesh.indices.push_back(first + corner);

@@ -6,8 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <fmt/format.h>
+#include <glm/glm.hpp>
 #include <map>
 #include <vector>
 #include <xxhash.h>
@@ -101,7 +101,7 @@ void check_attributes(const Resources& old_resources, const Geometry& old_geomet
         const pipeline::AttributeReader read_old(old_resources, *old_attribute), read(resources, attribute);
         for (const VertexPair& pair : pairs) {
             const glm::vec4 from = read_old(pair.before), to = read(pair.after);
-            CHECK_MSG(std::memcmp(&from, &to, sizeof from) == 0,
+            CHECK_MSG(glm::floatBitsToUint(from) == glm::floatBitsToUint(to),
                       fmt::format("{}: vertex {} changed", geometry.name, pair.before));
         }
     }

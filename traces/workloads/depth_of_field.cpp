@@ -123,7 +123,7 @@ std::vector<float> bounds_of(const DepthOfFieldParams& params, const Extent& ext
     const double begin = params.range[0] > 0.0 ? params.range[0] : extent.nearest + third;
     const double end = params.range[1] > 0.0 ? params.range[1] : extent.farthest - third;
     // Beyond the far plane, which belongs to the last range.
-    const std::vector<float> bounds{0.0F, depth.window(begin), depth.window(end), std::nextafter(1.0F, 2.0F)};
+    std::vector<float> bounds{0.0F, depth.window(begin), depth.window(end), std::nextafter(1.0F, 2.0F)};
     for (std::size_t i = 1; i < bounds.size(); ++i)
         if (!(bounds[i - 1] < bounds[i]))
             throw sim::InputError(fmt::format("{}: range: expected two distances between those of the near and the far "

@@ -32,7 +32,7 @@ pipeline::VertexAttribute add_attribute(pipeline::Resources& resources, Semantic
                                         const std::vector<T>& values) {
     pipeline::VertexAttribute attribute;
     attribute.semantic = semantic;
-    attribute.components = sizeof(T) / sizeof(float);
+    attribute.components = sizeof(T) / 4; // floats
     attribute.stride = sizeof(T);
     attribute.buffer = static_cast<std::uint32_t>(resources.buffers.size());
     const auto bytes = std::as_bytes(std::span<const T>(values));

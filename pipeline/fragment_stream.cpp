@@ -21,8 +21,10 @@ std::uint32_t FragmentStream::range_of(std::uint32_t primitive) const {
 }
 
 std::uint64_t FragmentStream::bytes() const {
-    return held(draws) + held(primitives) + held(triangles) + held(quads) + held(depths) + held(colours) +
-           held(texture_lines);
+    std::uint64_t outputs = held(colours);
+    for (const auto& output : more_outputs) outputs += held(output);
+    return held(draws) + held(primitives) + held(triangles) + held(quads) + held(depths) + outputs +
+           held(given_colours) + held(given_normals) + held(texture_lines);
 }
 
 } // namespace pipeline

@@ -83,8 +83,11 @@ struct FragmentStream {
 
     // Parallel to `quads`; colours and texture lines are empty when nothing needs them.
     std::vector<std::array<float, 4>> depths;      ///< window depth in [0,1] at each pixel centre, or sample
-    std::vector<std::array<glm::vec4, 4>> colours; ///< shaded linear RGBA, not premultiplied
-    std::vector<std::uint32_t> texture_lines;      ///< 64-byte line of the quad's texture fetch, ~0 = no fetch
+    std::vector<std::array<glm::vec4, 4>> colours; ///< shaded linear RGBA, not premultiplied: the first output
+    std::vector<std::vector<std::array<glm::vec4, 4>>> more_outputs; ///< of a shader with several: from the second on
+    /// What the shader of the pass is given, where it has one of its own; see ShaderInput.
+    std::vector<std::array<glm::vec4, 4>> given_colours, given_normals;
+    std::vector<std::uint32_t> texture_lines; ///< 64-byte line of the quad's texture fetch, ~0 = no fetch
 
     std::uint64_t groups = 0;              ///< quads of pixels; as many as `quads` with one sample
     std::uint64_t fragments = 0;           ///< covered pixels over all quads, or samples
@@ -98,6 +101,11 @@ struct FragmentStream {
     /// What a modify program may read of pixel `lane` (0 to 3) of a quad.
     Fragment fragment(QuadId quad, std::size_t lane) const {
         return {colours.empty() ? nullptr : &colours[quad][lane].x, depths[quad][lane], draw_of(quad)};
+    }
+
+    /// Output `number` of the shader at pixel `lane` of a quad.
+    const glm::vec4& output(std::size_t number, QuadId quad, std::size_t lane) const {
+        return (number == 0 ? colours : more_outputs[number - 1])[quad][lane];
     }
 
     std::uint64_t bytes() const; ///< memory held by the vectors

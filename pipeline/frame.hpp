@@ -8,6 +8,7 @@
 #include "pipeline/output/kbuffer.hpp"
 #include "pipeline/raster_state.hpp"
 #include "pipeline/resolve.hpp"
+#include "pipeline/shader.hpp"
 #include "pipeline/surface.hpp"
 
 #include <algorithm>
@@ -29,14 +30,8 @@ enum class Submission : std::uint8_t {
 enum class PassKind : std::uint8_t {
     clear,   ///< sets `clears` to their cleared values
     draw,    ///< rasterizes `draws`
+    screen,  ///< runs `shader` on every pixel of its targets
     resolve, ///< reads the finished surfaces and writes the picture; timed where Frame::resolve says how
-};
-
-/// What the shader makes of a fragment, where a pass asks for its colour.
-enum class FragmentColour : std::uint8_t {
-    lit,   ///< base colour x vertex colour x texture x light
-    flat,  ///< the base colour of its material: nothing is interpolated, lit or discarded
-    cosine ///< red, green and blue are |cos| of the angle between the surface normal and the direction to the eye
 };
 
 /// Triangles of one instance of a draw that are handed over with a draw call of their own: a run of the list that
@@ -58,12 +53,14 @@ struct Pass {
     std::vector<DrawPart> parts;      ///< of those draws, in this order; empty: each draw whole
     std::vector<RasterState> states = std::vector<RasterState>(1); ///< that its draws have
     std::vector<std::uint32_t> state_of_draw; ///< index into `states`, one for each of `draws`; empty: all the first
-    /// Colour surfaces, one for each output of the shader, blended where a state says.
+    /// Colour surfaces, one for each output of the shader, blended where a state says; no_surface: nobody reads it.
     std::vector<SurfaceId> targets;
-    std::uint32_t written_targets = 1; ///< counted: colour surfaces of that format written at once
-    SurfaceId depth = no_surface;      ///< tested and written as the states say, with its stencil
-    SurfaceId kbuffer = no_surface;    ///< fragments go through its modify program
-    bool both_faces = false;           ///< draws triangles that face away, too
+    std::shared_ptr<const Shader> shader; ///< null: the colour of the material is the only output
+    std::vector<SurfaceId> reads;         ///< what the shader knows by its place in this list
+    std::uint32_t written_targets = 1;    ///< counted: colour surfaces of that format written at once
+    SurfaceId depth = no_surface;         ///< tested and written as the states say, with its stencil
+    SurfaceId kbuffer = no_surface;       ///< fragments go through its modify program
+    bool both_faces = false;              ///< draws triangles that face away, too
     /// Attributes that the vertex shader reads beside what shading needs: bits as in mask_of(Semantic).
     std::uint32_t attributes = 0;
 
@@ -77,7 +74,15 @@ struct Pass {
         return any_state([](const RasterState& state) { return state.stencil.test; });
     }
     bool uses_depth() const { return tests_depth() || writes_depth() || tests_stencil(); }
-    bool writes_colour() const { return !targets.empty(); }
+    bool writes_colour() const { return first_target() != no_surface; }
+    SurfaceId first_target() const {
+        const auto target = std::find_if(targets.begin(), targets.end(), [](SurfaceId id) { return id != no_surface; });
+        return target == targets.end() ? no_surface : *target;
+    }
+    /// Sends fragments.
+    bool rasterizes() const { return kind == PassKind::draw || kind == PassKind::screen; }
+    /// Its shader has to wait for what earlier passes finish.
+    bool reads_surfaces() const { return !reads.empty(); }
     bool runs_program() const { return kbuffer != no_surface; }
 
   private:
@@ -96,7 +101,8 @@ struct Needs {
     bool texcoords = false;
     bool textures = false;
     bool alpha_test = false;
-    bool colours = false; ///< fragments carry a colour
+    bool colours = false;          ///< fragments carry a colour
+    bool fragment_normals = false; ///< fragments carry a normal
     FragmentColour fragment_colour = FragmentColour::lit;
     bool depth = false; ///< depth surface and its tile cache
     bool early_depth = false;
@@ -118,7 +124,8 @@ struct Frame {
     View view;                         ///< of the eye
     std::vector<View> other_views;     ///< of passes that see the scene from elsewhere
     std::vector<SurfaceInfo> surfaces; ///< that passes write
-    /// Index into `draws` of the triangle that covers the screen, for the screen passes of `resolve`.
+    SurfaceId output = no_surface;     ///< a colour surface that the frame is for; no_surface: the first of the passes
+    /// Index into `draws` of the triangle that covers the screen in screen passes.
     std::optional<std::uint32_t> screen_draw;
     Submission submission = Submission::buffers;
     std::vector<Pass> passes;
@@ -140,29 +147,27 @@ struct Frame {
     }
     /// The k-buffer does not show what the picture shows.
     bool kbuffer_seen_from_elsewhere() const { return &view_of_kbuffer() != &view; }
-    /// The surface that passes test depth against, write colours to or run the program on; no_surface: none.
+    /// The surface that passes test depth against, write colours to or run the program on; no_surface: none. Depth and
+    /// colours are those of the eye's picture.
     SurfaceId main_depth() const {
-        return first([](const Pass& pass) { return pass.depth; });
+        return first([this](const Pass& pass) { return of_eye(pass.depth); });
     }
     SurfaceId main_colour() const {
-        return first([](const Pass& pass) { return pass.targets.empty() ? no_surface : pass.targets.front(); });
+        if (output != no_surface) return output;
+        return first([this](const Pass& pass) { return of_eye(pass.first_target()); });
     }
     SurfaceId main_kbuffer() const {
         return first([](const Pass& pass) { return pass.kbuffer; });
     }
-    /// `needs` without what this pass does not read: one that shades no colour wants colours, normals and textures only
-    /// as far as an alpha test may read them.
-    Needs needs_of(const Pass& pass) const {
-        Needs own = needs;
-        if (pass.writes_colour() || (pass.runs_program() && program->needs_colour())) return own;
-        own.colours = own.normals = false;
-        own.vertex_colours &= own.alpha_test;
-        own.textures &= own.alpha_test;
-        own.texcoords &= own.alpha_test;
-        return own;
-    }
+    /// `needs` without what this pass does not read.
+    Needs needs_of(const Pass& pass) const;
 
   private:
+    SurfaceId of_eye(SurfaceId surface) const {
+        if (surface == no_surface) return no_surface;
+        const SurfaceInfo& info = surfaces[surface];
+        return info.width == view.width && info.height == view.height ? surface : no_surface;
+    }
     template <class Of>
     SurfaceId first(Of of) const {
         for (const Pass& pass : passes)

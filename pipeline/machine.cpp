@@ -3,6 +3,7 @@
 #include "pipeline/functional/composite.hpp"
 #include "pipeline/functional/fragment_operations.hpp"
 #include "pipeline/functional/screen_stream.hpp"
+#include "pipeline/functional/shade_pass.hpp"
 #include "pipeline/functional/shader.hpp"
 #include "pipeline/functional/surface_values.hpp"
 #include "pipeline/machine_units.hpp"
@@ -10,6 +11,7 @@
 #include "sim/described_json.hpp"
 
 #include <algorithm>
+#include <array>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -18,8 +20,8 @@ namespace pipeline {
 namespace {
 
 // Fixed function always works per sample.
-bool multisampled(const Frame& frame, const Pass& pass, const KBufferPlan& plan) {
-    return frame.view.samples > 1 && (!pass.runs_program() || plan.works_per_sample());
+bool multisampled(const FragmentStream& stream, const Pass& pass, const KBufferPlan& plan) {
+    return stream.samples > 1 && (!pass.runs_program() || plan.works_per_sample());
 }
 
 } // namespace
@@ -27,8 +29,8 @@ bool multisampled(const Frame& frame, const Pass& pass, const KBufferPlan& plan)
 Machine::Machine(const GpuParams& gpu, const Frame& frame, std::span<const FragmentStream> streams,
                  const KBufferDesign& design, const MachineOptions& options)
     : gpu_(gpu), frame_(&frame), streams_(streams), design_(&design), options_(options) {
-    const auto draw_passes = std::count_if(frame.passes.begin(), frame.passes.end(),
-                                           [](const Pass& pass) { return pass.kind == PassKind::draw; });
+    const auto draw_passes =
+        std::count_if(frame.passes.begin(), frame.passes.end(), [](const Pass& pass) { return pass.rasterizes(); });
     CHECK(static_cast<std::size_t>(draw_passes) == streams.size());
     if (frame.program != nullptr) {
         if (const std::string reason = design.refuses(*frame.program); !reason.empty())
@@ -54,6 +56,7 @@ void Machine::build() {
     units.simulation.set_observer(options_.observer);
     units.surfaces = SurfaceStore(frame_->surfaces);
     units.cleared.resize(frame_->surfaces.size());
+    diverged_.resize(frame_->surfaces.size());
     PassContext& pass = units.pass;
     pass.frame = frame_;
     pass.program = frame_->program.get();
@@ -107,7 +110,9 @@ void Machine::build() {
 }
 
 bool Machine::pass_reads_textures() const {
-    return frame_->needs.textures || peels() || keeps_lists() || frame_->screen_draw;
+    const bool reads = std::any_of(frame_->passes.begin(), frame_->passes.end(),
+                                   [](const Pass& pass) { return pass.reads_surfaces(); });
+    return reads || frame_->needs.textures || peels() || keeps_lists() || frame_->screen_draw;
 }
 
 bool Machine::peels() const { return frame_->needs.kbuffer && plan_.site == UpdateSite::passes; }
@@ -136,10 +141,10 @@ std::uint64_t Machine::total_quads(const Frame& frame, std::span<const FragmentS
     std::uint64_t quads = 0;
     std::size_t next = 0;
     for (const Pass& pass : frame.passes) {
-        if (pass.kind != PassKind::draw) continue;
+        if (!pass.rasterizes()) continue;
         const FragmentStream& stream = streams[next++];
         quads += (pass.runs_program() ? passes : 1) *
-                 (multisampled(frame, pass, plan) ? stream.groups : std::uint64_t{stream.quads.size()});
+                 (multisampled(stream, pass, plan) ? stream.groups : std::uint64_t{stream.quads.size()});
     }
     return quads;
 }
@@ -162,6 +167,7 @@ void Machine::set_costs(const Needs& needs) {
         for (ShaderCost& cost : costs) cost.behind_read = (frame_->program->cost().operations + 3) / 4;
     }
     if (units_->pass.screen != nullptr) registers = units_->pass.screen->registers;
+    if (units_->pass.runs_shader()) registers = std::max(registers, units_->pass.pass->shader->shape().registers);
     // Where fragments get their memory from a counter, the shader waits for it: to the point of coherence and back.
     units_->pass.atomic_latency = units_->pass.end == FragmentEnd::kbuffer_list && plan_.lists.counter_per_clk != 0
                                       ? 2 * static_cast<std::uint32_t>(gpu_.crossbar.latency) +
@@ -202,79 +208,52 @@ void Machine::run_draw(const FragmentStream& stream, const Needs& needs) {
     units.simulation.run(options_.stop);
 }
 
-void Machine::clear(const Pass& pass) {
-    begin(pass.name);
-    std::uint64_t bytes = 0;
-    for (const SurfaceId surface : pass.clears) {
-        const SurfaceInfo& info = frame_->surfaces[surface];
-        const SurfaceLayout layout = layout_of(info.width, info.height, info.planes);
-        const std::uint64_t texels = std::uint64_t{info.width} * info.height * info.planes;
-        units_->surfaces.clear(surface);
-        if (info.program == nullptr)
-            bytes += clear_surface(units_->cleared[surface], layout, texels, bytes_of(info.format));
-        // Peeling clears its layers one by one instead. Tile memory is cleared on chip, and stores whole sectors.
-        else if (plan_.shader.tile_memory)
-            units_->kbuffer_clear.set(layout);
-        else if (units_->lists || units_->kbuffer)
-            bytes += clear_surface(units_->kbuffer_clear, layout, texels, kbuffer_bytes());
-    }
-    if (bytes != 0) stream_surface(0, bytes);
-    end();
-}
-
-std::uint32_t Machine::kbuffer_bytes() const {
-    return units_->lists ? plan_.lists.head_bytes : frame_->program->bytes_per_pixel();
-}
-
-bool Machine::clears_fast(const SurfaceLayout& layout) const {
-    return gpu_.rop.fast_clear && layout.blocks() <= gpu_.rop.clear_sectors;
-}
-
-std::uint64_t Machine::clear_surface(ClearBits& bits, const SurfaceLayout& layout, std::uint64_t pixels,
-                                     std::uint32_t pixel_bytes) {
-    bits.reset();
-    if (!clears_fast(layout)) return pixels * pixel_bytes;
-    bits.set(layout);
-    return 0;
-}
-
-// Readers on the memory side do not see the table.
-void Machine::resolve_cleared(ClearBits& bits, std::uint32_t pixel_bytes) {
-    if (bits.left() != 0) stream_surface(0, bits.left() * 4 * pixel_bytes, true);
-    bits.reset();
-}
-
-void Machine::bind(const Pass& pass) {
+void Machine::bind(const Pass& pass, const FragmentStream& stream) {
     PassContext& context = units_->pass;
-    const auto format_of = [this](SurfaceId surface, SurfaceFormat otherwise) {
-        return surface == no_surface ? otherwise : frame_->surfaces[surface].format;
-    };
-    const SurfaceId colour = pass.targets.empty() ? no_surface : pass.targets.front();
     units_->fixed = {};
     units_->fixed.surfaces = &units_->surfaces;
     units_->fixed.depth = pass.depth;
     units_->fixed.targets = pass.targets;
-    if (pass.depth != no_surface) units_->fixed.depth_clear = &units_->cleared[pass.depth];
-    if (colour != no_surface) units_->fixed.colour_clear = &units_->cleared[colour];
-    context.layout = layout_of(frame_->view_of(pass));
-    context.multisampled = multisampled(*frame_, pass, plan_);
+    if (pass.depth != no_surface) units_->fixed.depth_clear = {&units_->cleared[pass.depth]};
+    for (const SurfaceId target : pass.targets)
+        if (target != no_surface) units_->fixed.colour_clear.push_back(&units_->cleared[target]);
+    context.pass = &pass;
+    context.layout = layout_of(stream.width, stream.height, stream.samples);
+    context.multisampled = multisampled(stream, pass, plan_);
     context.states = context.read_only_states = DrawStates(pass, frame_->draws.size());
-    context.colour_write = pass.writes_colour();
-    context.colour_format = format_of(colour, SurfaceFormat::rgba8);
-    context.colour_bytes = bytes_of(context.colour_format) * pass.written_targets;
-    context.depth_format = format_of(pass.depth, SurfaceFormat::d24);
+    context.targets.clear();
+    context.colour_bytes = 0;
+    for (const SurfaceId target : pass.targets) {
+        const bool written = target != no_surface;
+        context.targets.push_back(written ? std::optional(frame_->surfaces[target].format) : std::nullopt);
+        context.colour_bytes += written ? bytes_of(*context.targets.back()) : 0;
+    }
+    context.colour_bytes *= pass.written_targets;
+    context.depth_format = pass.depth == no_surface ? SurfaceFormat::d24 : frame_->surfaces[pass.depth].format;
     context.depth_bytes = bytes_of(context.depth_format);
     context.behind = nullptr;
-    context.read_only_surfaces = &units_->surfaces;
+    context.surfaces = &units_->surfaces;
     context.read_only_depth = pass.runs_program() && pass.tests_depth() ? pass.depth : no_surface;
 }
 
-void Machine::draw(const Pass& pass, const FragmentStream& stream) {
-    bind(pass);
+// Texture caches hold nothing of what a pass has rewritten.
+void Machine::drop_written(std::span<const SurfaceId> written) {
+    const SurfaceStore& surfaces = units_->surfaces;
+    for (const SurfaceId surface : written)
+        if (surface != no_surface)
+            for (FragmentPipeline& pipe : units_->pipes)
+                pipe.drop_surface(surfaces.address(surface, {}), surfaces.end_of(surface));
+}
+
+void Machine::draw(const Pass& pass, const FragmentStream& unshaded) {
+    FragmentStream shaded;
+    const FragmentStream& stream = shade_pass(pass, unshaded, units_->surfaces, shaded);
+    bind(pass, stream);
     PassContext& context = units_->pass;
     if (!pass.runs_program()) {
         context.end = FragmentEnd::depth_colour;
         begin(pass.name);
+        resolve_cleared(pass.reads);
         run_draw(stream, frame_->needs_of(pass));
         end();
         return;
@@ -287,6 +266,7 @@ void Machine::draw(const Pass& pass, const FragmentStream& stream) {
     }
     context.end = plan_.site == UpdateSite::blender ? FragmentEnd::kbuffer_blend : FragmentEnd::kbuffer_store;
     begin(pass.name);
+    resolve_cleared(pass.reads);
     if (context.end == FragmentEnd::kbuffer_store && !plan_.shader.tile_memory)
         resolve_cleared(units_->kbuffer_clear, kbuffer_bytes());
     run_draw(stream, frame_->needs_of(pass));
@@ -325,7 +305,8 @@ void Machine::screen(const ScreenPass& pass, std::uint32_t triangle) {
     context.end = FragmentEnd::depth_colour;
     context.states = DrawStates();
     context.read_only_depth = no_surface;
-    context.colour_write = true;
+    context.pass = nullptr;
+    context.targets = {SurfaceFormat::rgba8}; // whatever its format, a store without blending
     context.colour_bytes = pass.written_bytes;
     context.multisampled = false;
     context.screen = &pass;
@@ -335,16 +316,27 @@ void Machine::screen(const ScreenPass& pass, std::uint32_t triangle) {
     context.screen = nullptr;
 }
 
+void Machine::run_and_judge(std::size_t number, const FragmentStream& stream, const ReferenceImage& reference) {
+    const Pass& pass = frame_->passes[number];
+    SurfaceStore before = units_->surfaces; // pages are shared until the pass writes to them
+    draw(pass, stream);
+    drop_written(written_surfaces(pass));
+    judge(number, stream, before, reference);
+}
+
 RunResult Machine::run(const ReferenceImage& reference) {
     RunResult result;
     std::size_t next = 0;
-    for (const Pass& pass : frame_->passes) {
+    for (std::size_t number = 0; number < frame_->passes.size(); ++number) {
+        const Pass& pass = frame_->passes[number];
         switch (pass.kind) {
         case PassKind::clear:
             clear(pass);
+            note_clear(number, reference);
             break;
         case PassKind::draw:
-            draw(pass, streams_[next++]);
+        case PassKind::screen:
+            run_and_judge(number, streams_[next++], reference);
             break;
         case PassKind::resolve:
             resolve();
@@ -360,6 +352,7 @@ RunResult Machine::run(const ReferenceImage& reference) {
     collect_hazards(result);
     collect_counters(result);
     result.passes = std::move(passes_);
+    result.judgements = std::move(judgements_);
     result.host_ticks = units_->simulation.ticks();
     return result;
 }

@@ -35,7 +35,7 @@ struct MachineOptions {
 
 class Machine {
   public:
-    /// @param streams one per draw pass of `frame`, in order; they, `frame` and `design` must outlive the machine
+    /// @param streams what rasterize_frame() makes of `frame`; they, `frame` and `design` must outlive the machine
     /// Throws sim::InputError when the design cannot run the frame's program.
     Machine(const GpuParams& gpu, const Frame& frame, std::span<const FragmentStream> streams,
             const KBufferDesign& design, const MachineOptions& options = {});
@@ -62,7 +62,9 @@ class Machine {
     void clear(const Pass& pass);
     void draw(const Pass& pass, const FragmentStream& stream);
     /// The surfaces of a pass become those of the ROPs.
-    void bind(const Pass& pass);
+    void bind(const Pass& pass, const FragmentStream& stream);
+    void drop_written(std::span<const SurfaceId> written);
+    void run_and_judge(std::size_t number, const FragmentStream& stream, const ReferenceImage& reference);
     void resolve();
     /// @param triangle the draw whose triangle covers the screen, or stands for one that does
     void screen(const ScreenPass& pass, std::uint32_t triangle);
@@ -87,12 +89,16 @@ class Machine {
     std::uint64_t clear_surface(ClearBits& bits, const SurfaceLayout& layout, std::uint64_t pixels,
                                 std::uint32_t pixel_bytes);
     void resolve_cleared(ClearBits& bits, std::uint32_t pixel_bytes);
-    std::uint32_t kbuffer_bytes() const; ///< per pixel: entries, or heads of lists
+    void resolve_cleared(std::span<const SurfaceId> read); ///< surfaces that a shader is about to read
+    std::uint32_t kbuffer_bytes() const;                   ///< per pixel: entries, or heads of lists
     void set_costs(const Needs& needs);
     SurfaceLayout layout_of(std::uint32_t width, std::uint32_t height, std::uint32_t samples = 1) const {
         return {width, height, gpu_.rop.groups(), samples};
     }
     SurfaceLayout layout_of(const View& view) const { return layout_of(view.width, view.height, view.samples); }
+    /// Compares what pass `number` wrote with the reference of it on `before`, the surfaces as it found them.
+    void judge(std::size_t number, const FragmentStream& stream, SurfaceStore& before, const ReferenceImage& reference);
+    void note_clear(std::size_t number, const ReferenceImage& reference);
     void list_units(RunResult& result) const;
     void collect_pixels(RunResult& result, const ReferenceImage& reference) const;
     void judge_pixels(RunResult& result, const ReferenceImage& reference, std::vector<std::uint8_t> wrong,
@@ -116,6 +122,8 @@ class Machine {
     KBufferPlan plan_;
     std::unique_ptr<Units> units_;
     std::vector<PassResult> passes_;
+    std::vector<PassJudgement> judgements_;
+    std::vector<bool> diverged_; ///< by surface: it is not what the reference of the frame has at this time
     std::vector<float> layers_; ///< k-buffer content put together from peeled layers
     bool textures_linked_ = false;
 };

@@ -52,8 +52,8 @@ void Machine::draw_layers(const Pass& pass, const FragmentStream& stream) {
     fixed = {};
     fixed.surfaces = &layer;
     fixed.depth = 0;
-    fixed.depth_clear = &depth_clear;
-    fixed.colour_clear = &colour_clear;
+    fixed.depth_clear = {&depth_clear};
+    fixed.colour_clear = {&colour_clear};
     context.end = FragmentEnd::depth_colour;
     RasterState nearest;
     nearest.depth.test = nearest.depth.write = true;
@@ -61,9 +61,12 @@ void Machine::draw_layers(const Pass& pass, const FragmentStream& stream) {
     context.depth_format = plan_.passes.depth_format;
     // From both ends: two depths, two colours, both blended with MAX.
     context.depth_bytes = both_ends ? 8 : bytes_of(context.depth_format);
-    context.colour_write = program.needs_colour();
-    context.colour_format = SurfaceFormat::rgba32f;
-    context.colour_bytes = both_ends ? 32 : 16; // RGBA32F, as the k-buffer's entries
+    context.targets.clear();
+    context.colour_bytes = 0;
+    if (program.needs_colour()) { // RGBA32F, as the k-buffer's entries
+        context.targets = {SurfaceFormat::rgba32f};
+        context.colour_bytes = both_ends ? 32 : 16;
+    }
     context.farthest = both_ends;
     clear_layers();
     std::vector<PeeledLayer> near_layers, far_layers;
@@ -79,7 +82,7 @@ void Machine::draw_layers(const Pass& pass, const FragmentStream& stream) {
             fixed.far_winner.assign(pixels, ~QuadId{0});
         }
         std::uint64_t clear = clear_surface(depth_clear, context.layout, drawn, context.depth_bytes);
-        if (context.colour_write) clear += clear_surface(colour_clear, context.layout, drawn, context.colour_bytes);
+        if (context.writes_colour()) clear += clear_surface(colour_clear, context.layout, drawn, context.colour_bytes);
         if (clear != 0) stream_surface(0, clear);
         if (plan_.passes.capture == PassCapture::range) {
             context.range = program.range(i);

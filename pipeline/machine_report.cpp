@@ -192,7 +192,7 @@ void Machine::explain_peeling(std::vector<std::uint8_t>& facts) const {
     std::size_t stream = 0;
     for (const Pass& pass : frame_->passes) {
         if (pass.runs_program()) break;
-        stream += pass.kind == PassKind::draw ? 1 : 0;
+        stream += pass.rasterizes() ? 1 : 0;
     }
     const std::vector<PeelLoss> losses = peel_losses(plan_.passes, streams_[stream], places);
     for (std::size_t i = 0; i < places.size(); ++i)

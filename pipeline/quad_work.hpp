@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <iterator>
 #include <span>
 #include <vector>
 
@@ -41,6 +42,16 @@ class QuadWork {
 
     std::uint32_t instructions() const { return *std::max_element(issued_.begin(), issued_.end()); }
     std::span<const Fetch> fetches() const { return fetches_; }
+    /// Of all fetches, one after the other.
+    std::span<const std::uint64_t> lines() const { return lines_; }
+    /// The fetch whose first line this is in lines(); null: a further line of one, or none.
+    const Fetch* fetch_that_begins_with(std::size_t line) const {
+        const auto behind = std::upper_bound(fetches_.begin(), fetches_.end(), line,
+                                             [](std::size_t at, const Fetch& fetch) { return at < fetch.first; });
+        if (behind == fetches_.begin()) return nullptr;
+        const Fetch& fetch = *std::prev(behind); // of those that begin there the last: the others have no lines
+        return fetch.first == line && fetch.count != 0 ? &fetch : nullptr;
+    }
     /// Numbers of 64-byte lines of GPU memory.
     std::span<const std::uint64_t> lines(const Fetch& fetch) const {
         return std::span(lines_).subspan(fetch.first, fetch.count);

@@ -5,6 +5,7 @@
 #include "pipeline/functional/fragment_operations.hpp"
 #include "pipeline/functional/parallel.hpp"
 #include "pipeline/functional/pixel_lists.hpp"
+#include "pipeline/functional/shade_pass.hpp"
 #include "pipeline/functional/surface_texel.hpp"
 #include "pipeline/functional/surface_values.hpp"
 #include "sim/check.hpp"
@@ -46,7 +47,8 @@ class PassRunner {
           uses_depth_(pass.uses_depth()),
           counts_complexity_(pass.runs_program() || frame.program == nullptr) {
         if (uses_depth_) depth_format_ = surfaces.info(pass.depth).format;
-        for (const SurfaceId target : pass.targets) formats_.push_back(surfaces.info(target).format);
+        for (const SurfaceId target : pass.targets)
+            formats_.push_back(target == no_surface ? SurfaceFormat::rgba32f : surfaces.info(target).format);
         colours_.resize(formats_.size());
     }
 
@@ -74,7 +76,8 @@ class PassRunner {
     void take() {
         if (uses_depth_) depth_ = before_ = unpack_depth_stencil(depth_format_, surfaces_.read(pass_.depth, place_));
         for (std::size_t i = 0; i < colours_.size(); ++i)
-            colours_[i] = unpack_texel(formats_[i], surfaces_.read(pass_.targets[i], place_));
+            if (pass_.targets[i] != no_surface)
+                colours_[i] = unpack_texel(formats_[i], surfaces_.read(pass_.targets[i], place_));
         coloured_ = false;
         entries_ = nullptr;
     }
@@ -82,7 +85,8 @@ class PassRunner {
         if (uses_depth_ && depth_ != before_)
             pack_depth_stencil(depth_format_, depth_, surfaces_.written(pass_.depth, place_));
         for (std::size_t i = 0; coloured_ && i < colours_.size(); ++i)
-            pack_colour(formats_[i], colours_[i], surfaces_.written(pass_.targets[i], place_));
+            if (pass_.targets[i] != no_surface)
+                pack_colour(formats_[i], colours_[i], surfaces_.written(pass_.targets[i], place_));
     }
 
     void run_fragment(QuadId quad) {
@@ -106,8 +110,8 @@ class PassRunner {
 
     void store_colour(const RasterState& state, QuadId quad, std::size_t target) {
         if (state.write_mask[target] == 0) return;
-        glm::vec4 source = stream_.colours[quad][lane_];
-        if (state.blend[target].enabled) source.a *= frame_.opacity;
+        glm::vec4 source = stream_.output(target, quad, lane_);
+        if (state.blend[target].enabled && pass_.shader == nullptr) source.a *= frame_.opacity;
         colours_[target] =
             write_colour(formats_[target], state.blend[target], state.write_mask[target], source, colours_[target]);
         coloured_ = true;
@@ -173,12 +177,47 @@ class PassRunner {
     std::uint64_t accepted_ = 0, missed_reads_ = 0, missed_pixels_ = 0;
 };
 
+template <class Visit>
+void for_each_surface(const Pass& pass, Visit visit) {
+    for (const SurfaceId target : pass.targets)
+        if (target != no_surface) visit(target);
+    if (pass.uses_depth()) visit(pass.depth);
+    if (pass.runs_program()) visit(pass.kbuffer);
+}
+
+void draw_pass(const Frame& frame, const Pass& pass, const FragmentStream& unshaded, QuadId delay, unsigned threads,
+               SurfaceStore& surfaces, ReferenceImage& image, Counts& counts) {
+    FragmentStream shaded;
+    const FragmentStream& stream = shade_pass(pass, unshaded, surfaces, shaded, threads);
+    for_each_surface(pass, [&](SurfaceId surface) {
+        const SurfaceInfo& info = surfaces.info(surface);
+        CHECK_MSG(info.width == stream.width && info.height == stream.height && info.planes == stream.samples,
+                  fmt::format("pass {}: surface {} has another size than what it draws", pass.name, info.name));
+    });
+    CHECK(!pass.writes_colour() || stream.colours.size() == stream.quads.size());
+    CHECK_MSG(!pass.runs_program() || !pass.tests_stencil(), "a k-buffer pass does not test stencil");
+    CHECK(!pass.runs_program() || frame.program != nullptr);
+    const DrawStates states(pass, frame.draws.size());
+    const TileLists tiles(stream);
+    static_assert(TileLists::tile_width == SurfaceStore::page_size); // threads do not share pages
+    parallel_for(threads, tiles.count(), [&](std::size_t tile) {
+        PassRunner runner(frame, pass, states, stream, delay, surfaces, image, counts);
+        tiles.for_each_pixel(tile, [&](std::uint32_t x, std::uint32_t y, std::span<const QuadId> quads) {
+            runner.run_pixel(x, y, quads);
+        });
+        runner.add_counts();
+    });
+}
+
 class Reference {
   public:
     Reference(const Frame& frame, std::span<const FragmentStream> streams, QuadId delay, unsigned threads)
         : frame_(frame), streams_(streams), delay_(delay), threads_(threads), surfaces_(frame.surfaces) {
         image_.depth_complexity.resize(frame_.view_of_kbuffer().places());
-        for (const Pass& pass : frame.passes) run(pass);
+        for (const Pass& pass : frame.passes) {
+            run(pass);
+            keep_digests(pass);
+        }
         finish();
     }
 
@@ -191,6 +230,7 @@ class Reference {
             for (const SurfaceId surface : pass.clears) surfaces_.clear(surface);
             break;
         case PassKind::draw:
+        case PassKind::screen:
             draw(pass);
             break;
         case PassKind::resolve:
@@ -203,34 +243,12 @@ class Reference {
 
     void draw(const Pass& pass) {
         CHECK(next_stream_ < streams_.size());
-        const FragmentStream& stream = streams_[next_stream_++];
-        const View& view = frame_.view_of(pass);
-        CHECK(stream.width == view.width && stream.height == view.height && stream.samples == view.samples);
-        for_each_surface(pass, [&](SurfaceId surface) {
-            const SurfaceInfo& info = surfaces_.info(surface);
-            CHECK_MSG(info.width == view.width && info.height == view.height && info.planes == view.samples,
-                      fmt::format("pass {}: surface {} has another size than its view", pass.name, info.name));
-        });
-        CHECK(!pass.writes_colour() || stream.colours.size() == stream.quads.size());
-        CHECK_MSG(!pass.runs_program() || !pass.tests_stencil(), "a k-buffer pass does not test stencil");
-        CHECK(!pass.runs_program() || frame_.program != nullptr);
-        const DrawStates states(pass, frame_.draws.size());
-        const TileLists tiles(stream);
-        static_assert(TileLists::tile_width == SurfaceStore::page_size); // threads do not share pages
-        parallel_for(threads_, tiles.count(), [&](std::size_t tile) {
-            PassRunner runner(frame_, pass, states, stream, delay_, surfaces_, image_, counts_);
-            tiles.for_each_pixel(tile, [&](std::uint32_t x, std::uint32_t y, std::span<const QuadId> quads) {
-                runner.run_pixel(x, y, quads);
-            });
-            runner.add_counts();
-        });
+        draw_pass(frame_, pass, streams_[next_stream_++], delay_, threads_, surfaces_, image_, counts_);
     }
 
-    template <class Visit>
-    static void for_each_surface(const Pass& pass, Visit visit) {
-        for (const SurfaceId target : pass.targets) visit(target);
-        if (pass.uses_depth()) visit(pass.depth);
-        if (pass.runs_program()) visit(pass.kbuffer);
+    void keep_digests(const Pass& pass) {
+        std::vector<std::uint64_t>& digests = image_.digests.emplace_back();
+        for (const SurfaceId surface : written_surfaces(pass)) digests.push_back(surfaces_.digest(surface));
     }
 
     void read_surfaces() {
@@ -260,6 +278,30 @@ class Reference {
 };
 
 } // namespace
+
+std::vector<SurfaceId> written_surfaces(const Pass& pass) {
+    std::vector<SurfaceId> surfaces = pass.clears;
+    if (!pass.rasterizes()) return surfaces;
+    for (const SurfaceId target : pass.targets)
+        if (target != no_surface) surfaces.push_back(target);
+    if (pass.writes_depth() || pass.tests_stencil()) surfaces.push_back(pass.depth);
+    if (pass.runs_program()) surfaces.push_back(pass.kbuffer);
+    return surfaces;
+}
+
+std::vector<SurfaceId> surfaces_behind(const Pass& pass) {
+    std::vector<SurfaceId> surfaces = pass.reads;
+    if (pass.rasterizes()) for_each_surface(pass, [&](SurfaceId surface) { surfaces.push_back(surface); });
+    return surfaces;
+}
+
+void run_reference_pass(const Frame& frame, const Pass& pass, const FragmentStream& stream, SurfaceStore& surfaces,
+                        unsigned threads) {
+    ReferenceImage image;
+    image.depth_complexity.resize(std::size_t{stream.width} * stream.rows());
+    Counts counts;
+    draw_pass(frame, pass, stream, 1, threads, surfaces, image, counts);
+}
 
 ReferenceImage run_reference(const Frame& frame, std::span<const FragmentStream> streams, QuadId delay,
                              unsigned threads) {

@@ -22,6 +22,9 @@ struct ReferenceImage {
     std::vector<float> colour;         ///< RGBA per place of the "colour" surface, as the colour format holds it
     std::vector<float> picture;        ///< RGBA per pixel that the resolve pass makes; empty without one
 
+    /// After each pass of the frame, of each surface that it writes: see written_surfaces().
+    std::vector<std::vector<std::uint64_t>> digests;
+
     /// Per place of the k-buffer: alive fragments that reached it; the depth test, in frames without a k-buffer.
     std::vector<std::uint32_t> depth_complexity;
     std::uint64_t accepted_insertions = 0; ///< k-buffer updates that changed their pixel
@@ -31,12 +34,21 @@ struct ReferenceImage {
     std::uint64_t missed_pixels = 0; ///< pixels with such a fragment
 };
 
-/// Executes the frame. `streams` holds one stream for each draw pass of the frame, in pass order.
+/// Executes the frame. `streams` holds what rasterize_frame() makes of it.
 ///
 /// With `delay` = H > 1, quad i reads a pixel's k-buffer as the quads up to i - H left it, and stores its result in
 /// raster order: a later store overwrites what an earlier one it did not see had changed (checks K1 and K4). H = 1 is
 /// SEQ. Depth and colour are always in order. The result is the same for any number of threads (0 = all cores).
 ReferenceImage run_reference(const Frame& frame, std::span<const FragmentStream> streams, QuadId delay = 1,
                              unsigned threads = 0);
+
+/// The surfaces that a pass writes or clears: targets, depth, k-buffer.
+std::vector<SurfaceId> written_surfaces(const Pass& pass);
+/// Those whose content it depends on: what it writes, as it need not write all of it, and what its shader reads.
+std::vector<SurfaceId> surfaces_behind(const Pass& pass);
+
+/// Executes one pass, which rasterizes, on `surfaces`; `stream` is its stream as rasterize_frame() makes it.
+void run_reference_pass(const Frame& frame, const Pass& pass, const FragmentStream& stream, SurfaceStore& surfaces,
+                        unsigned threads = 0);
 
 } // namespace pipeline

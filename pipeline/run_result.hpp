@@ -65,6 +65,13 @@ struct DrawResult {
     std::vector<std::uint64_t> counters;
 };
 
+/// A surface after a pass, against the reference of that pass alone on what the run had before it.
+struct PassJudgement {
+    std::string pass, surface;
+    std::uint64_t wrong_places = 0; ///< texels, or pixels of a k-buffer, that differ in any bit
+    bool other_inputs = false;      ///< a pass before has left other surfaces than the reference of the whole frame
+};
+
 struct RunResult {
     std::string design;
     double core_mhz = 0;
@@ -108,6 +115,7 @@ struct RunResult {
     sim::JsonValue area;   ///< as area_json() says
     std::vector<SurfaceResult> surfaces;
     std::vector<PassResult> passes;
+    std::vector<PassJudgement> judgements; ///< of the frame's passes that send fragments, in order
     std::vector<std::string> draw_counters; ///< names of DrawResult::counters
     std::vector<DrawResult> draws;
 

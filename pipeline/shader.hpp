@@ -10,22 +10,36 @@
 
 #include <array>
 #include <cstdint>
-#include <vector>
+#include <optional>
 
 namespace pipeline {
 
+/// The colour that a material gives a fragment.
+enum class FragmentColour : std::uint8_t {
+    lit,    ///< base colour x vertex colour x texture x light
+    unlit,  ///< without the light
+    flat,   ///< the base colour: nothing is interpolated, lit or discarded
+    cosine, ///< red, green and blue are |cos| of the angle between the surface normal and the direction to the eye
+};
+
 /// What a pass has to provide for a shader.
 struct ShaderShape {
-    std::uint32_t outputs = 1;   ///< colours, one for each target of the pass
-    std::uint32_t registers = 4; ///< 128-bit registers per fragment; they limit the quads in flight
-    bool discards = false;
-    std::vector<SurfaceId> reads; ///< surfaces that earlier passes finished
+    std::uint32_t outputs = 1;              ///< colours, one for each target of the pass
+    std::uint32_t reads = 0;                ///< surfaces that earlier passes finished; see Pass::reads
+    std::uint32_t registers = 4;            ///< 128-bit registers per fragment; they limit the quads in flight
+    std::optional<FragmentColour> colour{}; ///< of the material, that it starts from; draw passes only
+    bool normal = false;                    ///< it reads the surface's normal; draw passes only
 };
 
 /// A quad. Pixel i is (x + i % 2, y + i / 2).
 struct ShaderInput {
     std::uint32_t x = 0, y = 0; ///< both even
     unsigned pixels = 15;       ///< mask of those to be shaded
+    std::uint32_t draw = 0;     ///< index into Frame::draws
+    bool front = true;          ///< the triangle's corners run counter-clockwise on the screen
+    Lanes depth{};              ///< window depth in [0,1]; 0 in screen passes
+    QuadTexels colour{};        ///< linear RGBA as asked for by the shape, else 0
+    QuadTexels normal{};        ///< eye space, of unit length or 0; w is 0
 };
 
 struct ShaderOutput {
@@ -37,7 +51,8 @@ class Shader {
   public:
     virtual ~Shader() = default;
     virtual ShaderShape shape() const = 0;
-    /// `output.alive` holds the input's pixels on entry, and its colours are 0.
+    /// Makes the outputs of the input's pixels; what it clears in `output.alive`, which holds these pixels on entry, is
+    /// discarded. Colours are 0 on entry. Surfaces are known by their place in Pass::reads.
     virtual void shade(const ShaderInput& input, SurfaceAccess& surfaces, ShaderOutput& output) const = 0;
 };
 

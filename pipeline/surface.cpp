@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <xxhash.h>
 
 namespace pipeline {
 
@@ -73,6 +74,25 @@ void SurfaceStore::clear(SurfaceId id) {
         for (Page& page : level.pages) page.reset();
 }
 
+// Pages at the edge reach beyond the surface; what lies there is never written.
+std::uint64_t SurfaceStore::digest(SurfaceId id) const {
+    const Surface& surface = surfaces_[id];
+    const std::size_t page_bytes = std::size_t{page_size} * page_size * surface.texel_bytes;
+    const std::uint64_t cleared = XXH3_64bits(own_page(surface, nullptr).get(), page_bytes);
+    std::vector<std::uint64_t> pages;
+    for (const Level& level : surface.levels)
+        for (const Page& page : level.pages)
+            pages.push_back(page == nullptr ? cleared : XXH3_64bits(page.get(), page_bytes));
+    return XXH3_64bits(pages.data(), pages.size() * sizeof(std::uint64_t));
+}
+
+std::uint64_t SurfaceStore::differences(const SurfaceStore& other, SurfaceId surface) const {
+    std::uint64_t count = 0;
+    for (std::uint32_t row = 0; row < rows(surface); ++row)
+        for (std::uint32_t x = 0; x < info(surface).width; ++x) count += same(other, surface, {x, row, 0}) ? 0 : 1;
+    return count;
+}
+
 bool SurfaceStore::same(const SurfaceStore& other, SurfaceId surface, SurfacePlace place) const {
     const std::byte *here = read(surface, place), *there = other.read(surface, place);
     return std::memcmp(here, there, surfaces_[surface].texel_bytes) == 0;
@@ -86,6 +106,13 @@ std::uint64_t SurfaceStore::address(SurfaceId id, SurfacePlace place, std::uint3
     const std::uint64_t base = level.address + block * 4 * surface.texel_bytes;
     if (surface.info.program == nullptr) return base + pixel * surface.texel_bytes;
     return base + (std::uint64_t{target} * 4 + pixel) * target_bytes;
+}
+
+std::uint64_t SurfaceStore::end_of(SurfaceId id) const {
+    const Surface& surface = surfaces_[id];
+    const Level& last = surface.levels.back();
+    const std::uint64_t blocks = SurfaceLayout{last.width, last.rows, 1}.blocks();
+    return last.address + blocks * 4 * surface.texel_bytes;
 }
 
 std::uint64_t SurfaceStore::allocated(const Surface& surface) {

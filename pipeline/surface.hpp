@@ -104,6 +104,10 @@ class SurfaceStore {
 
     /// Sets every texel to the cleared value and gives the pages back.
     void clear(SurfaceId surface);
+    /// Hash of all its bytes; that of a page that nothing was written to and of one that holds the same are equal.
+    std::uint64_t digest(SurfaceId surface) const;
+    /// Places of level 0 at which both hold different bytes.
+    std::uint64_t differences(const SurfaceStore& other, SurfaceId surface) const;
     /// Whether both hold the same bytes there.
     bool same(const SurfaceStore& other, SurfaceId surface, SurfacePlace place) const;
 
@@ -116,6 +120,8 @@ class SurfaceStore {
     /// Byte address of a texel in GPU memory: tiles of 4x4 pixels in row order, 2x2 blocks within. A block of a
     /// k-buffer holds one render target (16 bytes a pixel) after the other.
     std::uint64_t address(SurfaceId surface, SurfacePlace place, std::uint32_t target = 0) const;
+    /// Behind the last byte of all its planes and levels.
+    std::uint64_t end_of(SurfaceId surface) const;
     /// Behind the last surface.
     std::uint64_t end_address() const { return end_address_; }
 

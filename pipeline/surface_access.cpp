@@ -45,8 +45,9 @@ glm::vec4 SurfaceAccess::texel(SurfaceId surface, std::int32_t x, std::int32_t y
     return unpack_texel(info.format, surfaces_.read(surface, place));
 }
 
-QuadTexels SurfaceAccess::fetch(SurfaceId surface, const LaneIndices& x, const LaneIndices& y, unsigned pixels,
+QuadTexels SurfaceAccess::fetch(std::uint32_t slot, const LaneIndices& x, const LaneIndices& y, unsigned pixels,
                                 std::uint32_t plane, std::uint32_t level) {
+    const SurfaceId surface = slots_[slot];
     CHECK(surfaces_.info(surface).program == nullptr);
     QuadTexels result{};
     begin_fetch(surface);
@@ -74,14 +75,15 @@ QuadTexels SurfaceAccess::filter(SurfaceId surface, const SurfaceSampler& sample
     return result;
 }
 
-QuadTexels SurfaceAccess::sample(SurfaceId surface, const SurfaceSampler& sampler, const Lanes& u, const Lanes& v,
+QuadTexels SurfaceAccess::sample(std::uint32_t slot, const SurfaceSampler& sampler, const Lanes& u, const Lanes& v,
                                  unsigned pixels, std::uint32_t plane) {
-    const float level = sampler.mips ? level_of_detail(surfaces_.info(surface), u, v) : 0.0F;
-    return sample_level(surface, sampler, u, v, pixels, level, plane);
+    const float level = sampler.mips ? level_of_detail(info(slot), u, v) : 0.0F;
+    return sample_level(slot, sampler, u, v, pixels, level, plane);
 }
 
-QuadTexels SurfaceAccess::sample_level(SurfaceId surface, const SurfaceSampler& sampler, const Lanes& u, const Lanes& v,
-                                       unsigned pixels, float level_of_detail, std::uint32_t plane) {
+QuadTexels SurfaceAccess::sample_level(std::uint32_t slot, const SurfaceSampler& sampler, const Lanes& u,
+                                       const Lanes& v, unsigned pixels, float level_of_detail, std::uint32_t plane) {
+    const SurfaceId surface = slots_[slot];
     const SurfaceInfo& info = surfaces_.info(surface);
     CHECK(info.program == nullptr);
     const auto last = static_cast<float>(info.levels - 1);
@@ -98,8 +100,9 @@ QuadTexels SurfaceAccess::sample_level(SurfaceId surface, const SurfaceSampler& 
     return result;
 }
 
-std::array<const float*, 4> SurfaceAccess::pixels(SurfaceId kbuffer, const LaneIndices& x, const LaneIndices& row,
+std::array<const float*, 4> SurfaceAccess::pixels(std::uint32_t slot, const LaneIndices& x, const LaneIndices& row,
                                                   unsigned pixels, std::uint32_t first, std::uint32_t count) {
+    const SurfaceId kbuffer = slots_[slot];
     const SurfaceInfo& info = surfaces_.info(kbuffer);
     CHECK(info.program != nullptr && first + count <= info.program->targets());
     std::array<const float*, 4> result{};

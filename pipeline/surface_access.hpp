@@ -12,6 +12,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/vec4.hpp>
+#include <span>
 
 namespace pipeline {
 
@@ -28,8 +29,9 @@ struct SurfaceSampler {
 
 class SurfaceAccess {
   public:
-    /// `surfaces` outlives it, and `work` where there is one.
-    explicit SurfaceAccess(const SurfaceStore& surfaces, QuadWork* work = nullptr) : surfaces_(surfaces), work_(work) {}
+    /// `surfaces` and `slots` outlive it, and `work` where there is one. The shader knows surface slots[i] as i.
+    SurfaceAccess(const SurfaceStore& surfaces, std::span<const SurfaceId> slots, QuadWork* work = nullptr)
+        : surfaces_(surfaces), slots_(slots), work_(work) {}
 
     /// Counts instructions of the pixels in the mask.
     void issue(std::uint32_t instructions, unsigned pixels = 15) {
@@ -37,23 +39,23 @@ class SurfaceAccess {
     }
 
     /// The texels at these places, for the pixels in the mask; 0 for others and outside of the surface.
-    QuadTexels fetch(SurfaceId surface, const LaneIndices& x, const LaneIndices& y, unsigned pixels,
+    QuadTexels fetch(std::uint32_t slot, const LaneIndices& x, const LaneIndices& y, unsigned pixels,
                      std::uint32_t plane = 0, std::uint32_t level = 0);
 
     /// Filtered at coordinates in [0,1] over the surface, v = 0 at row 0; the level follows from the derivatives within
     /// the quad, so coordinates of pixels outside of the mask count, too.
-    QuadTexels sample(SurfaceId surface, const SurfaceSampler& sampler, const Lanes& u, const Lanes& v, unsigned pixels,
-                      std::uint32_t plane = 0);
+    QuadTexels sample(std::uint32_t slot, const SurfaceSampler& sampler, const Lanes& u, const Lanes& v,
+                      unsigned pixels, std::uint32_t plane = 0);
     /// The same at a level of detail that the shader gives; 0 is the finest.
-    QuadTexels sample_level(SurfaceId surface, const SurfaceSampler& sampler, const Lanes& u, const Lanes& v,
+    QuadTexels sample_level(std::uint32_t slot, const SurfaceSampler& sampler, const Lanes& u, const Lanes& v,
                             unsigned pixels, float level_of_detail, std::uint32_t plane = 0);
 
     /// Pixels of a k-buffer at these places, null for those not in the mask: their program's floats, of which the
     /// shader reads render targets [first, first + count). Each of them is a texture read of its own.
-    std::array<const float*, 4> pixels(SurfaceId kbuffer, const LaneIndices& x, const LaneIndices& row, unsigned pixels,
-                                       std::uint32_t first, std::uint32_t count);
+    std::array<const float*, 4> pixels(std::uint32_t slot, const LaneIndices& x, const LaneIndices& row,
+                                       unsigned pixels, std::uint32_t first, std::uint32_t count);
 
-    const SurfaceStore& surfaces() const { return surfaces_; }
+    const SurfaceInfo& info(std::uint32_t slot) const { return surfaces_.info(slots_[slot]); }
 
   private:
     QuadTexels filter(SurfaceId surface, const SurfaceSampler& sampler, const Lanes& u, const Lanes& v, unsigned pixels,
@@ -65,6 +67,7 @@ class SurfaceAccess {
     }
 
     const SurfaceStore& surfaces_;
+    std::span<const SurfaceId> slots_;
     QuadWork* work_;
 };
 

@@ -154,6 +154,16 @@ ordered_json passes_json(const pipeline::RunResult& run) {
     return list;
 }
 
+ordered_json judgements_json(const pipeline::RunResult& run) {
+    ordered_json list = ordered_json::array();
+    for (const pipeline::PassJudgement& judgement : run.judgements)
+        list.push_back({{"pass", judgement.pass},
+                        {"surface", judgement.surface},
+                        {"wrong_places", judgement.wrong_places},
+                        {"other_inputs", judgement.other_inputs}});
+    return list;
+}
+
 ordered_json surfaces_json(const pipeline::RunResult& run) {
     ordered_json list = ordered_json::array();
     for (const auto& [info, memory] : run.surfaces)
@@ -252,6 +262,7 @@ ordered_json design_json(const Comparison& comparison, std::size_t number, const
                          {"supports", *comparison.design_support.at(number)},
                          {"surfaces", surfaces_json(run)},
                          {"passes", passes_json(run)},
+                         {"judgements", judgements_json(run)},
                          {"draws", draws_json(run)}};
     if (run.draws.size() > most_draws_listed) json["draws_summed"] = draws_summed_json(run);
     // The comparison's "needs" states what all designs have in common.

@@ -69,7 +69,7 @@ PassSums clears_of_kbuffer(const pipeline::Frame& frame, const pipeline::RunResu
 void RunValues::read_passes(const Comparison& comparison, const pipeline::RunResult& run) {
     const double milliseconds_per_cycle = run.core_mhz > 0.0 ? 1.0 / (run.core_mhz * 1000.0) : 0.0;
     for (const pipeline::Pass& pass : comparison.frame->passes) {
-        if (pass.kind != pipeline::PassKind::draw) continue;
+        if (!pass.rasterizes()) continue;
         auto [cycles, bytes] = sums_of(run, pass.name);
         const auto write = [&, &cycles = cycles, &bytes = bytes](const std::string& prefix) {
             const double ms = cycles * milliseconds_per_cycle;

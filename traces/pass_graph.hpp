@@ -4,26 +4,50 @@
 #include "pipeline/frame.hpp"
 
 #include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace traces {
 
-/// Names of the surfaces that pipeline::Pass knows.
+/// Names of the surfaces that need not be declared: of the frame's formats, the last two without an own picture.
 inline constexpr const char* depth_surface = "depth";
 inline constexpr const char* colour_surface = "colour";
 inline constexpr const char* kbuffer_surface = "kbuffer";
 inline constexpr const char* picture_surface = "picture"; ///< what a resolve pass writes
 
-/// Passes in the order of submission. A pass names what it reads and writes; depth tests and the flags `colour` and
-/// `kbuffer` of pipeline::Pass follow from those names and from add_draw's arguments.
+/// A pass with a shader of its own. Surfaces are known by their names; those of add_surface() and the ones above.
+struct ShadedPass {
+    std::string name;
+    std::shared_ptr<const pipeline::Shader> shader;
+    std::vector<std::string> reads;   ///< in the order in which the shader knows them
+    std::vector<std::string> targets; ///< one for each output of the shader; its last ones may go nowhere
+    bool screen = false;              ///< draws every pixel of the targets instead of `draws`
+    std::vector<std::uint32_t> draws;
+    std::string depth;   ///< tested and written as the states say, with its stencil; none: ""
+    std::string kbuffer; ///< runs the program on output 0; none: ""
+    std::vector<pipeline::RasterState> states = std::vector<pipeline::RasterState>(1);
+    std::vector<std::uint32_t> state_of_draw; ///< one for each draw; empty: all the first
+    bool both_faces = false;
+    std::optional<pipeline::View> view; ///< none: Frame::view
+};
+
+/// Passes in the order of submission. A pass names what it reads and writes; depth tests and writes of colours and of
+/// the k-buffer follow from those names and from add_draw's arguments.
 class PassGraph {
   public:
     /// `frame` holds what is common to all passes: scene, view, program, formats. Its passes, needs and left_out are
     /// replaced by lower().
     explicit PassGraph(pipeline::Frame frame);
 
+    void add_surface(pipeline::SurfaceInfo info);
+    /// As large as what the first pass that writes it sees. Depth formats are cleared to the far plane.
+    void add_surface(std::string name, pipeline::SurfaceFormat format, const glm::vec4& cleared = glm::vec4(0.0F));
+    /// Throws sim::InputError where it reads what it writes.
+    void add_shaded(ShadedPass pass);
     void add_clear(std::string name, std::vector<std::string> writes);
     /// `reads` and `writes` take depth, colour and kbuffer: reading depth tests against it, writing depth stores it,
     /// writing kbuffer runs the program (which reads the entries as well). `both_faces` turns face culling off; `blend`
@@ -56,16 +80,24 @@ class PassGraph {
     struct Node {
         pipeline::Pass pass;
         std::vector<std::string> reads, writes; ///< names of surfaces
+        // The same, by what they are for.
+        std::vector<std::string> slots, targets;
+        std::string depth, kbuffer;
+    };
+    struct Surface {
+        pipeline::SurfaceInfo info;
+        bool sized = false;
     };
     class Culling;
 
     /// The last pass, which draws.
     pipeline::Pass& last_draw();
-    static void bind_surfaces(pipeline::Frame& frame, std::span<const Node> nodes);
+    class Binding;
 
     pipeline::Frame frame_;
     pipeline::FragmentColour fragment_colour_ = pipeline::FragmentColour::lit;
     std::vector<Node> nodes_;
+    std::map<std::string, Surface> surfaces_;
     std::vector<std::string> outputs_;
     std::vector<pipeline::LeftOut> left_out_;
 };

@@ -1,5 +1,7 @@
 #include "pipeline/fragment/fragment_pipeline.hpp"
 
+#include "pipeline/functional/shade_pass.hpp"
+
 #include <algorithm>
 #include <bit>
 
@@ -13,7 +15,8 @@ constexpr std::uint32_t ceil_div(std::uint32_t value, std::uint32_t by) { return
 // whose lines must not be taken for those of the layer before: 2^24 lines are those of the largest surface.
 constexpr std::uint64_t layer_lines = std::uint64_t{1} << 40U;
 constexpr std::uint64_t lines_of_layer = std::uint64_t{1} << 24U;
-constexpr std::uint64_t screen_lines = std::uint64_t{1} << 38U; ///< surfaces that full-screen passes read
+constexpr std::uint64_t surface_lines = std::uint64_t{1} << 39U; ///< surfaces that shaders of passes read
+constexpr std::uint64_t screen_lines = std::uint64_t{1} << 38U;  ///< what a ScreenShader reads
 
 } // namespace
 
@@ -33,6 +36,7 @@ FragmentPipeline::FragmentPipeline(sim::Context context, std::uint16_t pipe, con
                                          : 1),
       l1_(texture, site != nullptr && !site->bypass_l1 ? line_targets_ : 0),
       threads_(params.quads_in_flight),
+      work_(params.quads_in_flight),
       block_chain_(site != nullptr ? pass.layout.blocks() : 0),
       line_chain_(texture.l1_bytes / TextureParams::line_bytes + 1),
       shading_(params.quads_in_flight),
@@ -60,6 +64,11 @@ void FragmentPipeline::begin_pass(std::uint32_t registers_per_fragment) {
     call_ = ~std::uint32_t{0};
     ++passes_;
     thread_limit_ = std::clamp(params_.registers / std::max(registers_per_fragment, 1U), 1U, params_.quads_in_flight);
+}
+
+void FragmentPipeline::drop_surface(std::uint64_t begin, std::uint64_t end) {
+    l1_.drop_texture_lines(surface_lines + begin / TextureParams::line_bytes,
+                           surface_lines + (end + TextureParams::line_bytes - 1) / TextureParams::line_bytes);
 }
 
 // A10; the exact rule breaks ties of depth by submission order, so that no layer is lost and none is repeated.
@@ -117,6 +126,10 @@ void FragmentPipeline::start(const QuadTask& task) {
     thread.task.mask = captured_samples(task);
     stats_.peel_rejects += static_cast<std::uint64_t>(std::popcount(task.mask) - std::popcount(thread.task.mask));
     std::uint32_t instructions = pass_->shader_costs[draw].alu;
+    if (pass_->runs_shader()) {
+        run_shader(index);
+        instructions += work_[index].instructions();
+    }
     if (pass_->screen != nullptr) {
         const Quad& quad = pass_->stream->quads[task.quad];
         instructions = pass_->screen->shader->alu(quad.x, quad.y);
@@ -130,41 +143,72 @@ void FragmentPipeline::start(const QuadTask& task) {
     fetch_textures(index);
 }
 
+// Fetches that touch nothing but the border take their time, too.
+void FragmentPipeline::run_shader(std::uint16_t index) {
+    QuadWork& work = work_[index];
+    work.clear();
+    SurfaceAccess access(*pass_->surfaces, pass_->pass->reads, &work);
+    const ShaderInput input = shader_input(*pass_->stream, threads_[index].task.quad);
+    ShaderOutput output;
+    output.alive = input.pixels;
+    pass_->pass->shader->shade(input, access, output);
+    for (const QuadWork::Fetch& fetch : work.fetches())
+        if (fetch.count == 0) use_texture_unit(filter_cycles(fetch.texel_bytes));
+}
+
+bool FragmentPipeline::reads_texture(const QuadTask& task) const {
+    return pass_->textures && !pass_->stream->texture_lines.empty() &&
+           pass_->stream->texture_lines[task.quad] != ~std::uint32_t{0};
+}
+
+std::uint32_t FragmentPipeline::fetches_before_surfaces(const QuadTask& task) const {
+    return (reads_texture(task) ? 1U : 0U) + (pass_->behind != nullptr ? pass_->sample_quads(task.quad) : 0U);
+}
+
 // The 64-byte line of the quad's next read-only fetch: first the material's texture, then the peeled layer, at one
-// sample after the other; ~0 = no more.
-std::uint64_t FragmentPipeline::fetch_line(const Thread& thread) const {
+// sample after the other, then the surfaces that its shader reads; ~0 = no more.
+std::uint64_t FragmentPipeline::fetch_line(std::uint16_t index) const {
+    const Thread& thread = threads_[index];
     if (pass_->screen != nullptr) {
         if (thread.fetch == thread.fetches) return ~std::uint64_t{0};
         const Quad& quad = pass_->stream->quads[thread.task.quad];
         return screen_lines + pass_->screen->shader->line(quad.x, quad.y, thread.fetch);
     }
-    const bool textured = pass_->textures && !pass_->stream->texture_lines.empty() &&
-                          pass_->stream->texture_lines[thread.task.quad] != ~std::uint32_t{0};
+    const bool textured = reads_texture(thread.task);
     if (thread.fetch == 0 && textured) return pass_->stream->texture_lines[thread.task.quad];
     const std::uint32_t sample = thread.fetch - (textured ? 1U : 0U);
     if (pass_->behind != nullptr && sample < pass_->sample_quads(thread.task.quad)) {
         const Quad& quad = pass_->stream->quads[thread.task.quad + sample];
         return layer_lines + passes_ * lines_of_layer + pass_->layout.tile_of(quad.x, quad.y);
     }
-    return ~std::uint64_t{0};
+    if (!pass_->runs_shader()) return ~std::uint64_t{0};
+    const auto lines = work_[index].lines();
+    const std::uint32_t next = thread.fetch - fetches_before_surfaces(thread.task);
+    return next < lines.size() ? surface_lines + lines[next] : ~std::uint64_t{0};
+}
+
+std::uint32_t FragmentPipeline::fetch_cycles(std::uint16_t index) const {
+    if (pass_->screen != nullptr) return filter_cycles(pass_->screen->texel_bytes);
+    const Thread& thread = threads_[index];
+    const std::uint32_t before = pass_->runs_shader() ? fetches_before_surfaces(thread.task) : ~0U;
+    if (thread.fetch < before) return texture_.cycles_per_fetch;
+    const QuadWork::Fetch* fetch = work_[index].fetch_that_begins_with(thread.fetch - before);
+    return fetch != nullptr ? filter_cycles(fetch->texel_bytes) : 1;
 }
 
 // Texels of 4 and of 16 bytes take the times of the unit's parameters, those between a time between.
-std::uint32_t FragmentPipeline::fetch_cycles() const {
-    if (pass_->screen == nullptr) return texture_.cycles_per_fetch;
+std::uint32_t FragmentPipeline::filter_cycles(std::uint32_t texel_bytes) const {
     const std::uint32_t narrow = texture_.cycles_per_fetch, wide = std::max(narrow, texture_.cycles_per_rgba32f);
-    return narrow + ceil_div((wide - narrow) * (std::clamp(pass_->screen->texel_bytes, 4U, 16U) - 4), 12);
+    return narrow + ceil_div((wide - narrow) * (std::clamp(texel_bytes, 4U, 16U) - 4), 12);
 }
 
 // Fetches one after the other; each costs texture unit time, and a miss the way to memory.
 void FragmentPipeline::fetch_textures(std::uint16_t index) {
     Thread& thread = threads_[index];
-    const std::uint32_t cycles = fetch_cycles();
     for (;;) {
-        const std::uint64_t line = fetch_line(thread);
+        const std::uint64_t line = fetch_line(index);
         if (line == ~std::uint64_t{0}) break;
-        texture_free_ = std::max(texture_free_, cycle()) + cycles;
-        stats_.texture_cycles += cycles;
+        use_texture_unit(fetch_cycles(index));
         const std::uint32_t found = l1_.find_texture(line);
         if (found != TextureCache::none && !l1_.pending(found)) {
             ++stats_.l1.texture_hits;
@@ -182,6 +226,11 @@ void FragmentPipeline::fetch_textures(std::uint16_t index) {
         return;
     }
     if (!take_steps(index)) shaded(index);
+}
+
+void FragmentPipeline::use_texture_unit(sim::Cycle cycles) {
+    texture_free_ = std::max(texture_free_, cycle()) + cycles;
+    stats_.texture_cycles += cycles;
 }
 
 void FragmentPipeline::append(Chain& chain, std::uint16_t thread) {
@@ -306,8 +355,8 @@ bool FragmentPipeline::send_texture_request() {
         return true;
     }
     const Thread& thread = threads_[unsent_.front()];
-    textures_out.send({fetch_line(thread) * TextureParams::line_bytes, TextureParams::line_bytes, unsent_.front(),
-                       pass_->draw_of(thread.task.quad), MemoryClient::texture, false});
+    textures_out.send({fetch_line(unsent_.front()) * TextureParams::line_bytes, TextureParams::line_bytes,
+                       unsent_.front(), pass_->draw_of(thread.task.quad), MemoryClient::texture, false});
     unsent_.pop();
     return true;
 }

@@ -11,9 +11,10 @@
 // whoever waits for it already, and is not kept. A group of sample quads is shaded once; a shader that peels reads the
 // layer before at every sample of the group, and masks those out that it does not capture. The loop of a full-screen
 // pass fetches without waiting as long as it hits, and runs as long as its longest pixel; where its loads depend on
-// each other they go past the L1, step by step, each when the one before is back. Not modelled: individual
-// instructions; branches; fetches of one quad that go to several lines. Source: specification 004, sections 7, 7.1
-// (t_disp, t_rd, t_done; read value rule).
+// each other they go past the L1, step by step, each when the one before is back. A pass's own shader is run again for
+// its instructions and for the lines of the surfaces that it reads; a fetch takes the time of its texels, and a cycle
+// more for each further line. Not modelled: individual instructions; branches; several lines of a material's texture.
+// Source: specification 004, sections 7, 7.1 (t_disp, t_rd, t_done; read value rule).
 #pragma once
 
 #include "pipeline/fixed_queue.hpp"
@@ -77,6 +78,8 @@ class FragmentPipeline final : public sim::Component {
     const FragmentPipelineStats& stats() const { return stats_; }
     /// Drops all k-buffer lines and sets the quads in flight from the registers of the pass; between passes.
     void begin_pass(std::uint32_t registers_per_fragment);
+    /// Drops the lines of a surface that was written: bytes [begin, end) of the frame's surfaces.
+    void drop_surface(std::uint64_t begin, std::uint64_t end);
 
   private:
     static constexpr std::uint16_t nobody = 0xFFFF;
@@ -121,8 +124,14 @@ class FragmentPipeline final : public sim::Component {
     void invalidate(std::uint32_t block);
     void start(const QuadTask& task);
     void fetch_textures(std::uint16_t thread);
-    std::uint32_t fetch_cycles() const;
-    std::uint64_t fetch_line(const Thread& thread) const;
+    void use_texture_unit(sim::Cycle cycles);
+    std::uint32_t filter_cycles(std::uint32_t texel_bytes) const;
+    std::uint32_t fetch_cycles(std::uint16_t thread) const;
+    std::uint64_t fetch_line(std::uint16_t thread) const;
+    bool reads_texture(const QuadTask& task) const;
+    /// Fetches of a quad before those of the surfaces that its shader reads.
+    std::uint32_t fetches_before_surfaces(const QuadTask& task) const;
+    void run_shader(std::uint16_t thread);
     void texture_arrived(std::uint16_t thread);
     void fetched(std::uint16_t thread);
     bool take_steps(std::uint16_t thread);
@@ -163,6 +172,7 @@ class FragmentPipeline final : public sim::Component {
     TextureCache l1_;
     FragmentPipelineStats stats_;
     std::vector<Thread> threads_;
+    std::vector<QuadWork> work_; ///< by thread: of the shader that the pass brings
     std::vector<std::uint16_t> free_threads_;
     std::uint32_t thread_limit_ = 0;
     std::vector<Chain> block_chain_;      ///< threads that wait for lines of a block

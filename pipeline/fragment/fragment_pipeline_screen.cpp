@@ -26,9 +26,7 @@ bool FragmentPipeline::take_steps(std::uint16_t index) {
                                  MemoryClient::texture, segment.write});
         }
         const std::uint32_t fetches = (bytes + bytes_per_fetch - 1) / bytes_per_fetch;
-        const sim::Cycle cycles = std::uint64_t{fetches} * texture_.cycles_per_rgba32f;
-        texture_free_ = std::max(texture_free_, cycle()) + cycles;
-        stats_.texture_cycles += cycles;
+        use_texture_unit(std::uint64_t{fetches} * texture_.cycles_per_rgba32f);
         if (thread.loads != 0) return true;
     }
     return false;

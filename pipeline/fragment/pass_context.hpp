@@ -31,11 +31,14 @@ struct PassContext {
     const FragmentStream* stream = nullptr;
     const ModifyProgram* program = nullptr;
     const Frame* frame = nullptr;
+    const Pass* pass = nullptr;
+    const SurfaceStore* surfaces = nullptr; ///< of the frame, for shaders and early tests that read them
     SurfaceLayout layout;
     FragmentEnd end = FragmentEnd::depth_colour;
     DrawStates states; ///< of the fixed-function units behind the shader
-    bool colour_write = false;
-    std::uint32_t colour_bytes = 4; ///< per pixel of the colour target
+    /// Formats of the colour targets, nothing for those that are not written.
+    std::vector<std::optional<SurfaceFormat>> targets;
+    std::uint32_t colour_bytes = 0; ///< per pixel of all colour targets
     std::uint32_t depth_bytes = 4;
     const PeeledLayer* behind = nullptr; ///< reject what is not behind this layer
     const PeeledLayer* before = nullptr; ///< and what is not before this one
@@ -43,18 +46,19 @@ struct PassContext {
     bool farthest = false;               ///< capture the farthest fragment, too
     std::uint32_t first_kept = 0;        ///< lists: fragments of a pixel that earlier passes have dealt with
     PassesSite peel;
-    const SurfaceStore* read_only_surfaces = nullptr; ///< of the early depth test against a finished depth surface
-    SurfaceId read_only_depth = no_surface;
+    SurfaceId read_only_depth = no_surface;          ///< finished, for the early depth test
     DrawStates read_only_states;                     ///< whose depth compares that test makes
     SurfaceFormat depth_format = SurfaceFormat::d24; ///< of the surface that the pass tests and writes
-    SurfaceFormat colour_format = SurfaceFormat::rgba8;
-    std::vector<ShaderCost> shader_costs; ///< by draw
-    const ScreenPass* screen = nullptr;   ///< a full-screen pass, whose shader counts for every quad
-    std::uint32_t atomic_latency = 0;     ///< cycles that each shader waits for an atomic before it is done
+    std::vector<ShaderCost> shader_costs;            ///< by draw
+    const ScreenPass* screen = nullptr;              ///< a full-screen pass, whose shader counts for every quad
+    std::uint32_t atomic_latency = 0;                ///< cycles that each shader waits for an atomic before it is done
     bool textures = false;
     /// A task is a group of sample quads: shaded once, taken apart in the ROP. Else each sample quad is a task.
     bool multisampled = false;
 
+    bool writes_colour() const { return colour_bytes != 0; }
+    /// Its shader is run for every quad, for what it executes and fetches.
+    bool runs_shader() const { return pass != nullptr && pass->shader != nullptr; }
     /// Sample quads of the task that begins with this one.
     std::uint32_t sample_quads(QuadId first) const { return multisampled ? stream->quads[first].more + 1U : 1U; }
     /// Index of a pixel's place in surfaces that lie in row order.

@@ -48,6 +48,11 @@ std::uint32_t TextureCache::reserve(std::uint64_t tag) {
     return best;
 }
 
+void TextureCache::drop_texture_lines(std::uint64_t begin, std::uint64_t end) {
+    for (Line& line : lines_)
+        if (!is_kbuffer(line.tag) && line.tag >> 1U >= begin && line.tag >> 1U < end) line = {};
+}
+
 void TextureCache::drop_kbuffer_lines() {
     ++generation_;
     for (Line& line : lines_)

@@ -1,6 +1,6 @@
 // The texture L1 cache of one fragment pipe.
 //
-// Modelled: set-associative, LRU; lines of material textures and of peeled layers as tags with a pending state
+// Modelled: set-associative, LRU; lines of material textures, surfaces and peeled layers as tags with a pending state
 // (read-only data needs no bytes); lines of the k-buffer as snapshots of the bytes and versions of the array read that
 // filled them, because this cache is not coherent with the ROPs. Source: specification 004, section 7.1 (read value
 // rule) and section 7 (tex_l1 parameters).
@@ -68,6 +68,8 @@ class TextureCache {
     /// When the array behind the cache was read for this line.
     sim::Cycle& filled_at(std::uint32_t index) { return lines_[index].filled_at; }
 
+    /// Of read-only data that changed: lines [begin, end), none of them pending.
+    void drop_texture_lines(std::uint64_t begin, std::uint64_t end);
     void drop_kbuffer_lines();
     void drop_kbuffer_block(std::uint32_t block, std::uint32_t parts);
     /// Changes whenever lines were dropped: a fill asked for earlier must not be kept.

@@ -228,7 +228,8 @@ FragmentTest test_fragment(const RasterState& state, bool front, DepthCode incom
     return test;
 }
 
-SurfaceUse use_of(const RasterState& state, SurfaceFormat depth_format, bool colour, SurfaceFormat colour_format) {
+SurfaceUse use_of(const RasterState& state, SurfaceFormat depth_format,
+                  std::span<const std::optional<SurfaceFormat>> targets) {
     SurfaceUse use;
     const bool depth = has_depth(depth_format), stencil = has_stencil(depth_format) && state.stencil.test;
     const bool writes_depth = depth && state.depth.write;
@@ -236,10 +237,13 @@ SurfaceUse use_of(const RasterState& state, SurfaceFormat depth_format, bool col
     use.reads_depth = (depth && state.depth.test) || stencil;
     use.depth = use.reads_depth || writes_depth;
     use.keeps_depth = use.reads_depth || writes_a_part;
-    const unsigned channels = (1U << info_of(colour_format).channels) - 1U;
-    const unsigned written = state.write_mask[0] & channels;
-    use.colour = colour && written != 0;
-    use.keeps_colour = use.colour && (reads_target(state.blend[0]) || written != channels);
+    for (std::size_t i = 0; i < targets.size(); ++i) {
+        if (!targets[i]) continue;
+        const unsigned channels = (1U << info_of(*targets[i]).channels) - 1U;
+        const unsigned written = state.write_mask[i] & channels;
+        use.colour |= written != 0;
+        use.keeps_colour |= written != 0 && (reads_target(state.blend[i]) || written != channels);
+    }
     return use;
 }
 

@@ -8,6 +8,8 @@
 
 #include <cstdint>
 #include <glm/vec4.hpp>
+#include <optional>
+#include <span>
 
 namespace pipeline {
 
@@ -52,11 +54,12 @@ struct SurfaceUse {
     bool depth = false;        ///< the depth surface, with its stencil, is touched
     bool reads_depth = false;  ///< a test reads it
     bool keeps_depth = false;  ///< its old content is needed: for a test, or as only a part of a texel is written
-    bool colour = false;       ///< the colour surface is written
+    bool colour = false;       ///< a colour surface is written
     bool keeps_colour = false; ///< its old content is needed: blended with, or some channels are masked
 };
 
-/// @param colour whether the pass writes colours
-SurfaceUse use_of(const RasterState& state, SurfaceFormat depth_format, bool colour, SurfaceFormat colour_format);
+/// `targets`: formats of the colour targets that are written, nothing for those that are not.
+SurfaceUse use_of(const RasterState& state, SurfaceFormat depth_format,
+                  std::span<const std::optional<SurfaceFormat>> targets);
 
 } // namespace pipeline

@@ -8,8 +8,9 @@
 
 namespace pipeline {
 
-/// One stream per draw pass, in pass order. What to shade and which faces to keep follows from the frame; of `options`,
-/// threads, stop and progress count.
+/// One stream for each pass that rasterizes, in pass order. What to shade and which faces to keep follows from the
+/// frame; of `options`, threads, stop and progress count. Shaders that read surfaces have not run yet: see
+/// shade_pass.hpp.
 std::vector<FragmentStream> rasterize_frame(const Frame& frame, FrontEndOptions options = {});
 
 } // namespace pipeline

@@ -18,7 +18,8 @@
 namespace pipeline {
 
 struct FrontEndOptions {
-    bool colours = true; ///< fill FragmentStream::colours
+    bool colours = true;  ///< fill FragmentStream::colours
+    bool normals = false; ///< fill FragmentStream::given_normals
     FragmentColour fragment_colour = FragmentColour::lit;
     bool textures = true;    ///< read textures; without, materials have their base colour only
     bool both_faces = false; ///< keep triangles that face away, whatever their material says

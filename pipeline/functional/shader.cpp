@@ -57,8 +57,10 @@ FragmentShader::FragmentShader(const Resources& resources, const Geometry& geome
       cosine_(options.colours && options.fragment_colour == FragmentColour::cosine),
       flat_(material.flat),
       keeps_alpha_(material.transparent()) {
-    const bool reads_colour = options.fragment_colour == FragmentColour::lit || discards_;
-    normals_ = reader(resources, geometry, lit_ || cosine_, Semantic::normal, instance);
+    const bool of_material = options.colours && (options.fragment_colour == FragmentColour::lit ||
+                                                 options.fragment_colour == FragmentColour::unlit);
+    const bool reads_colour = of_material || discards_;
+    normals_ = reader(resources, geometry, lit_ || cosine_ || options.normals, Semantic::normal, instance);
     colours_ = reader(resources, geometry, reads_colour, Semantic::colour, instance);
     const bool textured = options.textures && reads_colour && material.base_texture >= 0;
     texcoords_ = reader(resources, geometry, textured && !options.sprites, texcoord(material.texcoord), instance);
@@ -97,7 +99,7 @@ ShaderTriangle FragmentShader::triangle(const std::array<std::uint32_t, 3>& vert
             corner.normal = result.corners[provoking].normal;
             corner.colour = result.corners[provoking].colour;
         }
-    if ((lit_ || cosine_) && !normals_) result.face_normal = face_normal(vertices);
+    if ((lit_ || cosine_ || options_.normals) && !normals_) result.face_normal = face_normal(vertices);
     if (lit_ && result.face_normal != glm::vec3(0.0F)) result.face_light = lambert(std::fabs(result.face_normal.z));
     if (weights == nullptr) return result;
 
@@ -112,24 +114,33 @@ ShaderTriangle FragmentShader::triangle(const std::array<std::uint32_t, 3>& vert
     return result;
 }
 
+// As interpolated, of any length.
+std::array<glm::dvec3, 4> FragmentShader::normals(const ShaderTriangle& triangle, const CornerWeights& weights) const {
+    std::array<glm::dvec3, 4> result;
+    result.fill(glm::dvec3(triangle.face_normal));
+    const auto& c = triangle.corners;
+    for (int i = 0; normals_ && i < 3; ++i) {
+        const Lanes axis = weights.interpolate(c[0].normal[i], c[1].normal[i], c[2].normal[i]);
+        for (std::size_t lane = 0; lane < 4; ++lane) result[lane][i] = axis[lane];
+    }
+    return result;
+}
+
 // Normals and directions of no length have the cosine 1: such a surface has no edge to be seen from.
 Lanes FragmentShader::cosines(const ShaderTriangle& triangle, const CornerWeights& weights) const {
     const auto& c = triangle.corners;
     Lanes result;
-    std::array<Lanes, 3> normal{}, position{};
+    const std::array<glm::dvec3, 4> normal = normals(triangle, weights);
+    std::array<Lanes, 3> position{};
     for (int i = 0; i < 3; ++i) {
         const auto axis = static_cast<std::size_t>(i);
-        if (normals_)
-            normal[axis] = weights.interpolate(c[0].normal[i], c[1].normal[i], c[2].normal[i]);
-        else
-            normal[axis].fill(triangle.face_normal[i]);
         if (options_.perspective)
             position[axis] = weights.interpolate(c[0].position[i], c[1].position[i], c[2].position[i]);
         else
             position[axis].fill(i == 2 ? 1.0F : 0.0F);
     }
     for (std::size_t lane = 0; lane < 4; ++lane) {
-        const glm::dvec3 n(normal[0][lane], normal[1][lane], normal[2][lane]);
+        const glm::dvec3& n = normal[lane];
         const glm::dvec3 p(position[0][lane], position[1][lane], position[2][lane]);
         const double lengths = glm::length(n) * glm::length(p);
         const double cosine = std::fabs(glm::dot(n, p)) / lengths;
@@ -191,8 +202,16 @@ FragmentShader::Output FragmentShader::shade(const ShaderTriangle& triangle, con
     if (cosine_) {
         output.colours.fill(glm::vec4(1.0F));
         lights = cosines(triangle, weights);
-    } else if (normals_) {
+    } else if (lit_ && normals_) {
         lights = light(triangle, weights);
+    }
+    if (options_.normals) {
+        const std::array<glm::dvec3, 4> normal = normals(triangle, weights);
+        for (std::size_t lane = 0; lane < 4; ++lane) {
+            const double length = glm::length(normal[lane]);
+            if ((covered >> lane & 1U) != 0 && length > 0.0 && std::isfinite(length))
+                output.normals[lane] = glm::vec4(normal[lane] / length, 0.0);
+        }
     }
     for (std::size_t lane = 0; lane < 4; ++lane) {
         glm::vec4& colour = output.colours[lane];

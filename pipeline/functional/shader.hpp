@@ -28,6 +28,7 @@ ShaderCost shader_cost(const Material& material, const Geometry& geometry, const
 /// What the fragments of a draw are asked for.
 struct ShaderOptions {
     bool colours = true;
+    bool normals = false;
     FragmentColour fragment_colour = FragmentColour::lit;
     bool perspective = true; ///< the directions to the eye meet there; else they are parallel
     bool textures = true;
@@ -47,7 +48,7 @@ struct ShaderCorner {
 struct ShaderTriangle {
     std::array<ShaderCorner, 3> corners;
     float face_light = 1.0F; ///< where there are no vertex normals
-    glm::vec3 face_normal{}; ///< eye space, of unit length or none; where cosines are wanted
+    glm::vec3 face_normal{}; ///< eye space, of unit length or none; where cosines or normals are wanted
 };
 
 /// The shader of one instance of one draw.
@@ -56,8 +57,8 @@ class FragmentShader {
     FragmentShader(const Resources& resources, const Geometry& geometry, const Material& material,
                    const glm::mat4& model_to_eye, const ShaderOptions& options, std::uint32_t instance = 0);
 
-    /// True when shade() must be called: a colour is wanted, or fragments may be discarded.
-    bool needed() const { return options_.colours || discards_; }
+    /// True when shade() must be called: a colour or normal is wanted, or fragments may be discarded.
+    bool needed() const { return options_.colours || options_.normals || discards_; }
     /// True when shade() reads the texture.
     bool samples() const { return sampler_.has_value(); }
 
@@ -67,9 +68,10 @@ class FragmentShader {
                             std::size_t provoking = 2) const;
 
     struct Output {
-        std::array<glm::vec4, 4> colours; ///< linear RGBA; 0 where not covered
-        std::uint8_t alive = 0;           ///< covered and not discarded
-        std::uint32_t texture_line = ~0U; ///< of the first covered pixel; ~0 = no texture read
+        std::array<glm::vec4, 4> colours;   ///< linear RGBA; 0 where not covered
+        std::array<glm::vec4, 4> normals{}; ///< eye space, of unit length or 0; 0 where not covered or not asked for
+        std::uint8_t alive = 0;             ///< covered and not discarded
+        std::uint32_t texture_line = ~0U;   ///< of the first covered pixel; ~0 = no texture read
     };
     /// Shades the covered pixels of a quad.
     Output shade(const ShaderTriangle& triangle, const CornerWeights& weights, unsigned covered) const;
@@ -77,6 +79,7 @@ class FragmentShader {
   private:
     ShaderCorner corner(std::uint32_t vertex) const;
     glm::vec3 face_normal(const std::array<std::uint32_t, 3>& vertices) const;
+    std::array<glm::dvec3, 4> normals(const ShaderTriangle& triangle, const CornerWeights& weights) const;
     Lanes cosines(const ShaderTriangle& triangle, const CornerWeights& weights) const;
     Lanes light(const ShaderTriangle& triangle, const CornerWeights& weights) const;
     void texture(const ShaderTriangle& triangle, const CornerWeights& weights, unsigned covered, Output& output) const;

@@ -6,10 +6,17 @@ namespace pipeline {
 ShaderCost shader_cost(const Material& material, const Geometry& geometry, const Needs& needs) {
     const bool tests = needs.alpha_test && material.alpha_mode == AlphaMode::mask;
     ShaderCost cost{1, 0, 1}; // the result's own move and register
+    const bool smooth = needs.normals && geometry.find(Semantic::normal) != nullptr;
+    if (needs.fragment_normals) { // interpolated, or two derivatives and a cross product; then dot, reciprocal root,
+                                  // multiply
+        cost.alu += (smooth ? 1U : 4U) + 3U;
+        cost.registers += smooth ? 1U : 2U;
+    }
     if (!needs.colours && !tests) return cost;
     if (needs.colours && needs.fragment_colour == FragmentColour::flat) return cost;
 
-    const bool reads_colour = needs.fragment_colour == FragmentColour::lit || tests;
+    const bool reads_colour =
+        needs.fragment_colour == FragmentColour::lit || needs.fragment_colour == FragmentColour::unlit || tests;
     if (reads_colour && needs.vertex_colours && geometry.find(Semantic::colour) != nullptr) {
         cost.alu += 2; // interpolate, multiply
         cost.registers += 1;
@@ -20,12 +27,11 @@ ShaderCost shader_cost(const Material& material, const Geometry& geometry, const
         cost.textures += 1;
         cost.registers += 2;
     }
-    const bool smooth = needs.normals && geometry.find(Semantic::normal) != nullptr;
     if (needs.colours && needs.fragment_colour == FragmentColour::cosine) {
         // The normal as below, and the position interpolated; then three dots, multiply, reciprocal root, multiply.
         cost.alu += (smooth ? 1U : 4U) + 1U + 6U;
         cost.registers += smooth ? 2U : 3U;
-    } else if (needs.colours && !material.unlit) {
+    } else if (needs.colours && needs.fragment_colour == FragmentColour::lit && !material.unlit) {
         // Interpolate, or two derivatives and a cross product of two instructions; then dot, reciprocal root, multiply,
         // ambient multiply-add, multiply.
         cost.alu += (smooth ? 1U : 4U) + 5U;

@@ -31,6 +31,7 @@ ShaderOptions shader_options(const FrontEndPlan& plan, const PlannedInstance& in
     const FrontEndOptions& options = plan.options;
     const bool flat = options.fragment_colour == FragmentColour::flat;
     return {.colours = options.colours,
+            .normals = options.normals,
             .fragment_colour = options.fragment_colour,
             .perspective = plan.view.projection[2][3] != 0.0F,
             .textures = options.textures && !flat,
@@ -140,6 +141,7 @@ class Shading {
         for (std::size_t n = 0; n < group.size(); ++n) {
             group[n].alive &= output.alive;
             if (!stream_.colours.empty()) stream_.colours[first + n] = output.colours;
+            if (!stream_.given_normals.empty()) stream_.given_normals[first + n] = output.normals;
             if (!stream_.texture_lines.empty()) stream_.texture_lines[first + n] = output.texture_line;
         }
     }
@@ -180,6 +182,7 @@ void shading_pass(FrontEndPlan& plan, FragmentStream& stream) {
     const std::size_t quads = stream.quads.size();
     stream.depths.resize(quads);
     if (plan.options.colours) stream.colours.resize(quads);
+    if (plan.options.normals) stream.given_normals.resize(quads);
     if (textures_are_read(plan)) stream.texture_lines.resize(quads, ~0U);
 
     const std::size_t pieces = (quads + quads_per_piece - 1) / quads_per_piece;

@@ -73,7 +73,7 @@ void Rop::begin_pass() {
     const bool kbuffer = pass_->end != FragmentEnd::depth_colour;
     uses_.clear();
     for (const RasterState& state : pass_->states.all()) {
-        uses_.push_back(use_of(state, pass_->depth_format, pass_->colour_write, pass_->colour_format));
+        uses_.push_back(use_of(state, pass_->depth_format, pass_->targets));
         uses_.back().keeps_depth |= pass_->farthest;
     }
     const std::array<bool, 3> used{shape_.depth && !kbuffer, shape_.colour && !kbuffer, kbuffer};

@@ -29,6 +29,7 @@
 #include <deque>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace pipeline {
@@ -134,7 +135,7 @@ class Rop final : public sim::Component {
 
     TileCache& cache(Use use);
     const TileCache& cache(Use use) const { return const_cast<Rop*>(this)->cache(use); }
-    ClearBits* clear_bits(Use use) const; ///< nullptr where nothing is ever cleared fast
+    std::span<ClearBits* const> clear_bits(Use use) const; ///< one for each target that is ever cleared
     SectorShape sector_shape(Use use) const;
     std::uint32_t own_lines(const SectorShape& shape) const;
     std::uint32_t lines_that_fit(Use use) const;

@@ -56,20 +56,22 @@ std::uint64_t Rop::line_address(Use use, std::uint32_t line) const {
     return surface_span * (static_cast<std::uint64_t>(use) + 1) + std::uint64_t{line} * cache(use).shape().line_bytes();
 }
 
-ClearBits* Rop::clear_bits(Use use) const {
-    return use == Use::depth    ? surfaces_.fixed->depth_clear
-           : use == Use::colour ? surfaces_.fixed->colour_clear
-                                : surfaces_.kbuffer_clear;
+std::span<ClearBits* const> Rop::clear_bits(Use use) const {
+    return use == Use::depth    ? std::span<ClearBits* const>(surfaces_.fixed->depth_clear)
+           : use == Use::colour ? std::span<ClearBits* const>(surfaces_.fixed->colour_clear)
+                                : std::span(&surfaces_.kbuffer_clear, surfaces_.kbuffer_clear != nullptr ? 1 : 0);
 }
 
-// Memory holds nothing of these sectors.
+// Memory holds nothing of these sectors: of any target.
 bool Rop::cleared(Use use, std::uint32_t line) const {
-    const ClearBits* bits = clear_bits(use);
-    if (bits == nullptr || bits->left() == 0) return false;
+    const auto of_targets = clear_bits(use);
     const std::uint32_t sectors = cache(use).shape().sectors();
-    for (std::uint32_t block = line * sectors; block < (line + 1) * sectors; ++block)
-        if (!bits->cleared(block)) return false;
-    return true;
+    return !of_targets.empty() && std::all_of(of_targets.begin(), of_targets.end(), [&](const ClearBits* bits) {
+        if (bits->left() == 0) return false;
+        for (std::uint32_t block = line * sectors; block < (line + 1) * sectors; ++block)
+            if (!bits->cleared(block)) return false;
+        return true;
+    });
 }
 
 bool Rop::has_room() const {
@@ -138,15 +140,14 @@ std::uint32_t Rop::write_run(std::uint64_t begin, std::uint64_t end, std::uint32
 
 // What has to be written so that memory holds these pixels: of a cleared sector all, as memory holds none of it.
 std::uint16_t Rop::with_cleared(Use use, std::uint32_t line, std::uint16_t pixels) {
-    ClearBits* bits = clear_bits(use);
-    if (bits == nullptr) return pixels;
     const SectorShape& shape = cache(use).shape();
-    for (std::uint32_t block = line * shape.sectors(); block < (line + 1) * shape.sectors(); ++block) {
-        const std::uint16_t sector = shape.in_line(block, 15);
-        if ((pixels & sector) == 0 || !bits->cleared(block)) continue;
-        pixels |= sector;
-        bits->written(block);
-    }
+    for (ClearBits* bits : clear_bits(use))
+        for (std::uint32_t block = line * shape.sectors(); block < (line + 1) * shape.sectors(); ++block) {
+            const std::uint16_t sector = shape.in_line(block, 15);
+            if ((pixels & sector) == 0 || !bits->cleared(block)) continue;
+            pixels |= sector;
+            bits->written(block);
+        }
     return pixels;
 }
 

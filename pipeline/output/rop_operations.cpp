@@ -66,14 +66,13 @@ void Rop::capture_farthest(QuadId quad, std::size_t at, DepthCode code) {
 void Rop::store_colours(const RasterState& state, QuadId quad, std::uint32_t pixel, SurfacePlace place) {
     const FixedSurfaces& fixed = *surfaces_.fixed;
     for (std::size_t target = 0; target < fixed.targets.size(); ++target) {
-        if (state.write_mask[target] == 0) continue;
-        glm::vec4 source = pass_->stream->colours[quad][pixel];
-        if (state.blend[target].enabled) source.a *= pass_->frame->opacity;
+        if (!pass_->targets[target] || state.write_mask[target] == 0) continue;
+        const SurfaceFormat format = *pass_->targets[target];
+        glm::vec4 source = pass_->stream->output(target, quad, pixel);
+        if (state.blend[target].enabled && !pass_->runs_shader()) source.a *= pass_->frame->opacity;
         std::byte* texel = fixed.surfaces->written(fixed.targets[target], place);
-        const glm::vec4 stored = unpack_texel(pass_->colour_format, texel);
-        pack_colour(pass_->colour_format,
-                    write_colour(pass_->colour_format, state.blend[target], state.write_mask[target], source, stored),
-                    texel);
+        const glm::vec4 stored = unpack_texel(format, texel);
+        pack_colour(format, write_colour(format, state.blend[target], state.write_mask[target], source, stored), texel);
     }
 }
 

@@ -16,9 +16,9 @@ namespace pipeline {
 struct FixedSurfaces {
     SurfaceStore* surfaces = nullptr;
     SurfaceId depth = no_surface;
-    std::vector<SurfaceId> targets;   ///< empty: nobody wants the colours' values
-    ClearBits* depth_clear = nullptr; ///< sectors that a fast clear left unwritten; null: never cleared
-    ClearBits* colour_clear = nullptr;
+    std::vector<SurfaceId> targets; ///< parallel to PassContext::targets; empty: nobody wants the colours' values
+    // Sectors that a fast clear left unwritten; nothing: never cleared. One for each colour target.
+    std::vector<ClearBits*> depth_clear, colour_clear;
     // Of a layer that is peeled, in row order.
     std::vector<QuadId> winner;       ///< that passed last; ~0 = cleared
     std::vector<DepthCode> far_depth; ///< of the farthest fragment, where it is captured, too; 0 = cleared

@@ -57,7 +57,7 @@ std::uint32_t EarlyDepthTest::before_last_entry(const QuadTask& task) const {
 
 std::uint32_t EarlyDepthTest::before_surface(const QuadTask& task) const {
     if (pass_->read_only_depth == no_surface) return task.mask;
-    const SurfaceStore& surfaces = *pass_->read_only_surfaces;
+    const SurfaceStore& surfaces = *pass_->surfaces;
     const SurfaceFormat format = surfaces.info(pass_->read_only_depth).format;
     return kept_samples(task, [&](QuadId id, std::uint32_t pixel) {
         const DepthState& test = pass_->read_only_states.of(*pass_->stream, id).depth;

@@ -29,9 +29,8 @@ struct ColourPass : tests::QuadPass {
         pipeline::RasterState state;
         state.blend[0] = blend;
         context.states = pipeline::DrawStates(state);
-        context.colour_format = pipeline::SurfaceFormat::rgba32f;
         context.frame = &frame;
-        context.colour_write = true;
+        write_colours(pipeline::SurfaceFormat::rgba32f);
     }
 };
 
@@ -109,7 +108,7 @@ TEST(RopFixedFunction, PortOfTheCacheSetsTheRate) {
         DepthPass pass(blend);
         pipeline::Frame frame;
         pass.context.frame = &frame;
-        pass.context.colour_write = colour;
+        if (colour) pass.write_colours();
         for (const std::uint32_t block : {0U, 1U, 2U, 3U}) pass.quad(block % 2 * 2, block / 2 * 2, 15, depth);
         RopBench bench(pass, {.rop = {.bytes_per_clk = port}});
         bench.run();

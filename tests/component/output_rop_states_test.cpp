@@ -25,7 +25,7 @@ struct StatePass : tests::QuadPass {
         pass.states = std::move(states);
         context.states = pipeline::DrawStates(pass, pass.draws.size());
         context.frame = &frame;
-        context.colour_write = true;
+        write_colours();
         context.depth_format = pipeline::SurfaceFormat::d24s8;
     }
     void quad_of(std::uint32_t draw, const glm::vec4& colour, bool front = true, float depth = 0.5F) {

@@ -35,7 +35,7 @@ struct TestedPass : tests::QuadPass {
         state.depth.test = true;
         state.depth.compare = compare;
         context.read_only_states = pipeline::DrawStates(state);
-        context.read_only_surfaces = &surfaces;
+        context.surfaces = &surfaces;
         context.read_only_depth = 0;
     }
 

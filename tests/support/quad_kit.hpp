@@ -73,6 +73,12 @@ class QuadPass {
             quad(i * 2 % stream.width, i * 2 / stream.width * 2 % stream.height, 15, depth);
     }
 
+    /// The pass writes one colour target of this format, as far as values go; its bytes are four a pixel.
+    void write_colours(pipeline::SurfaceFormat format = pipeline::SurfaceFormat::rgba8) {
+        context.targets = {format};
+        context.colour_bytes = 4;
+    }
+
     const pipeline::ModifyProgram& program() const { return *program_; }
 
     std::vector<pipeline::TriangleTask> triangle_tasks() const {

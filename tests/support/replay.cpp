@@ -21,7 +21,7 @@ std::vector<std::string> Replay::designs() const {
 const pipeline::FragmentStream& Replay::kbuffer_stream() const {
     std::size_t next = 0;
     for (const pipeline::Pass& pass : frame.passes) {
-        if (pass.kind != pipeline::PassKind::draw) continue;
+        if (!pass.rasterizes()) continue;
         if (pass.runs_program()) return streams[next];
         ++next;
     }

@@ -136,14 +136,14 @@ class RopBench {
         return unpack_depth_stencil(pass.context.depth_format, surfaces.read(0, {x, row, 0}));
     }
     glm::vec4 colour(std::uint32_t x = 0, std::uint32_t row = 0) const {
-        return unpack_texel(pass.context.colour_format, surfaces.read(1, {x, row, 0}));
+        return unpack_texel(surfaces.info(1).format, surfaces.read(1, {x, row, 0}));
     }
     void set_depth(float depth) {
         const pipeline::SurfaceFormat format = pass.context.depth_format;
         fill(0, [&](std::byte* texel) { pack_depth_stencil(format, {depth_code(format, depth), 0}, texel); });
     }
     void set_colour(const glm::vec4& colour) {
-        fill(1, [&](std::byte* texel) { pack_colour(pass.context.colour_format, colour, texel); });
+        fill(1, [&](std::byte* texel) { pack_colour(surfaces.info(1).format, colour, texel); });
     }
 
     /// Cycles at which the first and the last quad of a draw were executed.
@@ -186,7 +186,8 @@ class RopBench {
     static pipeline::SurfaceStore surfaces_of(const QuadPass& pass) {
         const pipeline::SurfaceLayout& layout = pass.context.layout;
         pipeline::SurfaceInfo depth{.name = "depth", .format = pass.context.depth_format};
-        pipeline::SurfaceInfo colour{.name = "colour", .format = pass.context.colour_format};
+        pipeline::SurfaceInfo colour{.name = "colour"};
+        if (pass.context.writes_colour()) colour.format = *pass.context.targets[0];
         depth.width = colour.width = layout.width;
         depth.height = colour.height = layout.height;
         depth.planes = colour.planes = layout.samples;
@@ -201,9 +202,9 @@ class RopBench {
     pipeline::RopSurfaces bound(const RopOptions& options) {
         fixed.surfaces = &surfaces;
         fixed.depth = 0;
-        if (pass.context.colour_write) fixed.targets = {1};
-        fixed.depth_clear = &depth_clear;
-        fixed.colour_clear = &colour_clear;
+        if (pass.context.writes_colour()) fixed.targets = {1};
+        fixed.depth_clear = {&depth_clear};
+        fixed.colour_clear = {&colour_clear};
         return {&fixed,   options.shader || options.blender ? &kbuffer : nullptr,
                 &history, options.shader ? &payloads : nullptr,
                 nullptr,  &kbuffer_clear};

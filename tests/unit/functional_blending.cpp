@@ -174,7 +174,8 @@ TEST(SurfaceUse, OnlyWhatIsCombinedWithTheStoredColourNeedsIt) {
         RasterState state;
         state.blend[0] = blend;
         state.write_mask[0] = mask;
-        return use_of(state, SurfaceFormat::d24, true, format);
+        const std::optional<SurfaceFormat> target = format;
+        return use_of(state, SurfaceFormat::d24, std::span(&target, 1));
     };
     EXPECT_TRUE(use({}, 15).colour);
     EXPECT_FALSE(use({}, 15).keeps_colour);

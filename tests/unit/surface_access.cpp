@@ -3,6 +3,7 @@
 #include "models/programs/nearest_k.hpp"
 #include "pipeline/functional/surface_texel.hpp"
 
+#include <array>
 #include <gtest/gtest.h>
 
 namespace pipeline {
@@ -25,11 +26,13 @@ SurfaceStore ramp(std::uint32_t width, std::uint32_t height, std::uint32_t level
     return store;
 }
 
+constexpr std::array<SurfaceId, 1> only_surface{0};
+
 Lanes all(float value) { return {value, value, value, value}; }
 
 TEST(SurfaceAccess, FetchesSingleTexelsOfThePixelsAsked) {
     const SurfaceStore store = ramp(8, 8);
-    SurfaceAccess access(store);
+    SurfaceAccess access(store, only_surface);
     const QuadTexels texels = access.fetch(0, {2, 3, 2, 8}, {4, 4, 5, 0}, 0b1011);
     EXPECT_EQ(texels[0].r, 42.0F);
     EXPECT_EQ(texels[1].r, 43.0F);
@@ -40,13 +43,13 @@ TEST(SurfaceAccess, FetchesSingleTexelsOfThePixelsAsked) {
 
 TEST(SurfaceAccess, PlanesLieRowsApart) {
     const SurfaceStore store = ramp(4, 4, 1, 2);
-    SurfaceAccess access(store);
+    SurfaceAccess access(store, only_surface);
     EXPECT_EQ(access.fetch(0, {1, 1, 1, 1}, {2, 2, 2, 2}, 1, 1)[0].r, static_cast<float>(1 + 10 * (16 + 2)));
 }
 
 TEST(SurfaceAccess, BilinearIsExactAtCentresAndHalfwayBetween) {
     const SurfaceStore store = ramp(8, 8);
-    SurfaceAccess access(store);
+    SurfaceAccess access(store, only_surface);
     const SurfaceSampler sampler{.linear = true};
     EXPECT_EQ(access.sample(0, sampler, all(2.5F / 8), all(3.5F / 8), 1)[0].r, 32.0F);
     EXPECT_EQ(access.sample(0, sampler, all(3.0F / 8), all(3.5F / 8), 1)[0].r, 32.5F);
@@ -55,7 +58,7 @@ TEST(SurfaceAccess, BilinearIsExactAtCentresAndHalfwayBetween) {
 
 TEST(SurfaceAccess, WrapModesReachBeyondTheEdge) {
     const SurfaceStore store = ramp(4, 4);
-    SurfaceAccess access(store);
+    SurfaceAccess access(store, only_surface);
     const auto at = [&](Wrap wrap, float u) {
         const SurfaceSampler sampler{.wrap_u = wrap, .border = glm::vec4(7.0F)};
         return access.sample(0, sampler, all(u), all(0.125F), 1)[0].r;
@@ -75,7 +78,7 @@ TEST(SurfaceAccess, WrapModesReachBeyondTheEdge) {
 
 TEST(SurfaceAccess, TrilinearBlendsTwoLevels) {
     const SurfaceStore store = ramp(8, 8, 4);
-    SurfaceAccess access(store);
+    SurfaceAccess access(store, only_surface);
     const SurfaceSampler sampler{.linear = true, .mips = true};
     const auto centre = all(0.5F);
     const float fine = access.sample_level(0, sampler, centre, centre, 1, 0.0F)[0].r;
@@ -91,7 +94,7 @@ TEST(SurfaceAccess, TrilinearBlendsTwoLevels) {
 
 TEST(SurfaceAccess, LevelFollowsFromTheDerivatives) {
     const SurfaceStore store = ramp(8, 8, 4);
-    SurfaceAccess access(store);
+    SurfaceAccess access(store, only_surface);
     const SurfaceSampler sampler{.linear = true, .mips = true};
     const float two_texels = 2.0F / 8;
     const Lanes u{0.5F, 0.5F + two_texels, 0.5F, 0.5F + two_texels}, v = all(0.5F);
@@ -101,7 +104,7 @@ TEST(SurfaceAccess, LevelFollowsFromTheDerivatives) {
 TEST(QuadWork, RecordsTheDistinctLinesOfEachRead) {
     const SurfaceStore store = ramp(16, 16);
     QuadWork work;
-    SurfaceAccess access(store, &work);
+    SurfaceAccess access(store, only_surface, &work);
     access.fetch(0, {0, 1, 0, 1}, {0, 0, 1, 1}, 15);  // one block of 16 bytes
     access.fetch(0, {3, 4, 3, 4}, {0, 0, 0, 0}, 15);  // two tiles of 64 bytes
     access.fetch(0, {3, 4, 3, 4}, {0, 0, 0, 0}, 0b1); // one pixel
@@ -129,7 +132,7 @@ TEST(SurfaceAccess, KBuffersAreReadTargetByTarget) {
     SurfaceStore store(std::vector<SurfaceInfo>{kbuffer});
     reinterpret_cast<float*>(store.written(0, {1, 0}))[4] = 5.0F;
     QuadWork work;
-    SurfaceAccess access(store, &work);
+    SurfaceAccess access(store, only_surface, &work);
     const auto pixels = access.pixels(0, {0, 1, 0, 1}, {0, 0, 1, 1}, 0b0011, 1, 2);
     EXPECT_EQ(pixels[1][4], 5.0F);
     EXPECT_EQ(pixels[2], nullptr);

@@ -1,0 +1,26 @@
+#include "pipeline/frame.hpp"
+
+namespace pipeline {
+
+// A pass that shades no colour wants colours, normals and textures only as far as an alpha test may read them.
+Needs Frame::needs_of(const Pass& pass) const {
+    Needs own = needs;
+    if (pass.kind == PassKind::screen) own = {};
+    own.colours &= pass.writes_colour() || (pass.runs_program() && program->needs_colour());
+    own.fragment_normals = false;
+    if (pass.shader != nullptr) {
+        const ShaderShape shape = pass.shader->shape();
+        own.colours = shape.colour.has_value();
+        own.fragment_colour = shape.colour.value_or(FragmentColour::unlit);
+        own.fragment_normals = shape.normal;
+    }
+    const bool of_material = own.colours && own.fragment_colour != FragmentColour::flat;
+    const bool coloured = own.alpha_test || (of_material && own.fragment_colour != FragmentColour::cosine);
+    own.normals &= own.fragment_normals || (of_material && own.fragment_colour != FragmentColour::unlit);
+    own.vertex_colours &= coloured;
+    own.textures &= coloured;
+    own.texcoords &= coloured;
+    return own;
+}
+
+} // namespace pipeline

@@ -29,6 +29,13 @@ struct PendingStore {
     std::vector<float> entries;
 };
 
+/// Of frames without a k-buffer: what is drawn for the eye, but for volumes that a shader only looks at surfaces
+/// through.
+bool counts_complexity(const Frame& frame, const Pass& pass) {
+    if (pass.runs_program() || frame.program != nullptr) return pass.runs_program();
+    return pass.kind == PassKind::draw && pass.view == 0 && (pass.shader == nullptr || pass.uses_depth());
+}
+
 /// Runs the fragments of one draw pass, pixel by pixel: a pixel's depth, stencil and colours are in hand while its
 /// fragments come.
 class PassRunner {
@@ -45,7 +52,7 @@ class PassRunner {
           counts_(counts),
           floats_(pass.runs_program() ? frame.program->floats_per_pixel() : 0),
           uses_depth_(pass.uses_depth()),
-          counts_complexity_(pass.runs_program() || frame.program == nullptr) {
+          counts_complexity_(counts_complexity(frame, pass)) {
         if (uses_depth_) depth_format_ = surfaces.info(pass.depth).format;
         for (const SurfaceId target : pass.targets)
             formats_.push_back(target == no_surface ? SurfaceFormat::rgba32f : surfaces.info(target).format);

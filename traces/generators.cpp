@@ -63,10 +63,10 @@ std::string hash_of(const Scene& scene) {
 } // namespace
 
 const std::vector<Generator>& generators() {
-    static const std::vector<Generator> list = {grass_generator(), blob_generator(),       grid_soup_generator(),
-                                                stack_generator(), quads_generator(),      random_quads_generator(),
-                                                discs_generator(), tetrahedra_generator(), particles_generator(),
-                                                csg_generator(),   slabs_generator(),      planes_generator()};
+    static const std::vector<Generator> list = {
+        grass_generator(),        blob_generator(),   grid_soup_generator(),  stack_generator(),     quads_generator(),
+        random_quads_generator(), discs_generator(),  tetrahedra_generator(), particles_generator(), csg_generator(),
+        slabs_generator(),        planes_generator(), showroom_generator()};
     return list;
 }
 

@@ -25,7 +25,7 @@ const std::vector<Workload>& workloads() {
     static const std::vector<Workload> list = {transparency_workload(),   opaque_workload(),       blended_workload(),
                                                geometry_workload(),       translucency_workload(), csg_workload(),
                                                depth_of_field_workload(), isosurface_workload(),   volume_workload(),
-                                               particles_workload(),      soft_shadows_workload()};
+                                               particles_workload(),      soft_shadows_workload(), deferred_workload()};
     return list;
 }
 

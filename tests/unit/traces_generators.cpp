@@ -135,7 +135,7 @@ TEST(Generators, BlobOfTheDragonHasItsTriangles) { EXPECT_EQ(traces::load_scene(
 TEST(Generators, ErrorsNameWhatWasExpected) {
     EXPECT_EQ(error_of("gen:gras"),
               "gen:gras: expected one of grass, blob, grid-soup, stack, quads, random-quads, discs, "
-              "tetrahedra, particles, csg, slabs, planes; "
+              "tetrahedra, particles, csg, slabs, planes, showroom; "
               "did you mean 'grass'?");
     EXPECT_EQ(error_of("gen:grass?bladez=5"), "gen:grass: unknown key 'bladez'; did you mean 'blades'?");
     EXPECT_EQ(error_of("gen:grass?bla\ndes=5"), "gen:grass: unknown key 'bla des'; did you mean 'blades'?");

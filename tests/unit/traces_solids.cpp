@@ -5,6 +5,7 @@
 #include "traces/scene.hpp"
 
 #include <array>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <numbers>
 
@@ -75,6 +76,22 @@ TEST(Solids, MistakesAreNamed) {
               "gen:tetrahedra: field: expected one of linear | radial | constant, got \"quadratic\"");
     EXPECT_EQ(support::load_error("gen:planes?distances=[1,2]"), "gen:planes: distances: expected 3 values, got [1,2]");
     EXPECT_NE(support::load_error("gen:slabs?thickness=[0,1]").find("thickness.0: expected number"), std::string::npos);
+}
+
+TEST(Showroom, HasAsManyTrianglesOfGlassAsAskedFor) {
+    for (const auto& [triangles, glass] :
+         {std::pair{59'644U, 20'832U}, {59'644U, 10'434U}, {59'644U, 0U}, {64U, 16U}}) {
+        const Scene scene =
+            traces::load_scene(fmt::format("gen:showroom?triangles={}&transparent={}", triangles, glass));
+        std::uint64_t transparent = 0;
+        for (const pipeline::Draw& draw : scene.draws)
+            if (scene.resources->materials[draw.material].transparent())
+                transparent += scene.resources->geometries[draw.geometry].triangle_count();
+        EXPECT_EQ(scene.triangles_drawn, triangles);
+        EXPECT_EQ(transparent, glass);
+    }
+    EXPECT_EQ(support::load_error("gen:showroom?triangles=64&transparent=40"),
+              "gen:showroom: transparent: expected 0, or 16 to triangles - 28, got 40 of 64");
 }
 
 } // namespace

@@ -22,6 +22,7 @@ Generator particles_generator();
 Generator csg_generator();
 Generator slabs_generator();
 Generator planes_generator();
+Generator showroom_generator();
 
 /// A row of the table; `build` makes the scene (all but its name, hash and counts) from the parameters.
 template <sim::Described P>

@@ -21,6 +21,7 @@ Workload isosurface_workload();
 Workload volume_workload();
 Workload particles_workload();
 Workload soft_shadows_workload();
+Workload deferred_workload();
 
 /// What tells one set of parameters from another.
 std::string key_of(sim::DescribedRef parameters);

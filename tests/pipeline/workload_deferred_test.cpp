@@ -1,0 +1,276 @@
+// Deferred shading of one transparent layer (specification 003): passes, surfaces, rows, equations, methods against
+// each other, and that no design has anything to break.
+#include "pipeline/functional/fragment_operations.hpp"
+#include "pipeline/functional/surface_texel.hpp"
+#include "pipeline/functional/surface_values.hpp"
+#include "tests/support/replay.hpp"
+#include "traces/deferred/shadow_filter.hpp"
+#include "traces/deferred/spot_lights.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+
+namespace workload_deferred_test {
+
+using pipeline::Frame;
+using pipeline::Pass;
+using pipeline::PassKind;
+using pipeline::SurfaceFormat;
+using Settings = std::vector<std::string>;
+using support::Replay;
+
+constexpr const char* showroom = "gen:showroom?triangles=9000&transparent=3000";
+constexpr std::uint32_t width = 96, height = 72;
+
+Replay deferred(Settings settings, const std::string& scene = showroom, const char* map = "map_size=64") {
+    support::ReplayOptions options;
+    options.width = width;
+    options.height = height;
+    options.workload = "deferred";
+    settings.emplace_back(map);
+    options.knobs = std::move(settings);
+    return Replay(scene, options);
+}
+
+Frame frame_of(const Settings& settings, std::uint32_t columns = 1920, std::uint32_t rows = 1080) {
+    static const traces::Scene scene = traces::load_scene(showroom);
+    return traces::build_frame(scene, traces::make_view(scene, "auto", columns, rows), "deferred",
+                               traces::WorkloadOptions::of(settings));
+}
+
+/// The surfaces as the reference leaves them after the last pass.
+pipeline::SurfaceStore surfaces_of(const Replay& replay) {
+    pipeline::SurfaceStore surfaces(replay.frame.surfaces);
+    std::size_t next = 0;
+    for (const Pass& pass : replay.frame.passes)
+        if (pass.kind == PassKind::clear)
+            for (const pipeline::SurfaceId surface : pass.clears) surfaces.clear(surface);
+        else
+            run_reference_pass(replay.frame, pass, replay.streams[next++], surfaces);
+    return surfaces;
+}
+
+std::vector<float> colours(const Replay& replay, const pipeline::SurfaceStore& surfaces, const std::string& name) {
+    for (pipeline::SurfaceId i = 0; i < surfaces.count(); ++i)
+        if (replay.frame.surfaces[i].name == name) return colours_of(surfaces, i);
+    ADD_FAILURE() << name;
+    return {};
+}
+
+std::size_t passes_named(const Frame& frame, const std::string& begin) {
+    return static_cast<std::size_t>(std::count_if(frame.passes.begin(), frame.passes.end(), [&](const Pass& pass) {
+        return pass.rasterizes() && pass.name.starts_with(begin);
+    }));
+}
+
+TEST(Deferred, S003_D1_PassesOfAFrame) {
+    for (const std::uint32_t lights : {0U, 1U, 3U, 64U}) {
+        const std::string count = "lights=" + std::to_string(lights);
+        const Frame pm = frame_of({count}, 64, 48), dp = frame_of({count, "method=dp"}, 64, 48);
+        EXPECT_EQ(passes_named(pm, "G-buffer") + passes_named(pm, "shadow"), 1 + lights);
+        EXPECT_EQ(passes_named(dp, "G-buffer") + passes_named(dp, "shadow"), 2 + lights);
+        EXPECT_EQ(passes_named(pm, "light"), lights);
+        EXPECT_EQ(passes_named(dp, "light"), 2 * lights);
+    }
+}
+
+TEST(Deferred, S003_D2_RenderTargets) {
+    const auto targets = [](const Settings& settings) {
+        std::pair<std::uint32_t, double> sum{0, 0.0}; // number, MB
+        for (const pipeline::SurfaceInfo& surface : frame_of(settings).surfaces) {
+            const bool shadow = surface.name.starts_with("shadow");
+            if (shadow || surface.name == "picture" || has_depth(surface.format)) continue;
+            ++sum.first;
+            sum.second += static_cast<double>(surface.nominal_bytes()) / 1e6;
+        }
+        return sum;
+    };
+    EXPECT_EQ(targets({}).first, 5U);
+    EXPECT_NEAR(targets({}).second, 41.5, 0.05);
+    EXPECT_EQ(targets({"method=dp"}).first, 10U);
+    EXPECT_NEAR(targets({"method=dp"}).second, 82.9, 0.05);
+}
+
+TEST(Deferred, S003_D9_NoTransparentTexelOnAnEvenRow) {
+    const Replay replay = deferred({"lights=1"});
+    const pipeline::SurfaceStore surfaces = surfaces_of(replay);
+    for (const char* name : {"colours", "shadow colours"}) {
+        const std::vector<float> texels = colours(replay, surfaces, name);
+        const std::size_t row = std::string(name) == "colours" ? width : 64;
+        std::size_t transparent = 0;
+        for (std::size_t i = 0; i < texels.size() / 4; ++i) {
+            if (texels[i * 4 + 3] == 1.0F) continue;
+            ++transparent;
+            EXPECT_EQ(i / row % 2, 1U) << name << ' ' << i;
+        }
+        EXPECT_GT(transparent, 50U) << name;
+    }
+}
+
+TEST(Deferred, S003_D10_OpaqueScenesAreThoseOfPlainDeferredShading) {
+    const std::string opaque = "gen:showroom?triangles=4000&transparent=0";
+    for (const char* refraction : {"refraction=true", "refraction=false"}) {
+        const Settings common{"lights=3", "shadows=none", refraction};
+        Settings peeled = common;
+        peeled.emplace_back("method=dp");
+        EXPECT_EQ(deferred(common, opaque).reference.colour, deferred(peeled, opaque).reference.colour);
+    }
+}
+
+TEST(Deferred, S003_D11_Equation31) {
+    const glm::vec3 light(1.0F);
+    const traces::ShadowTexel pane{0.3F, {0.2F, 0.8F, 1.0F, 0.5F}}, wall{0.6F, {0.0F, 0.0F, 0.0F, 1.0F}};
+    const auto filtered = [&](float depth) {
+        EXPECT_EQ(light_through(pane, wall, depth, light), light_through(wall, pane, depth, light)) << depth;
+        return light_through(pane, wall, depth, light);
+    };
+    EXPECT_EQ(filtered(0.2F), light);
+    EXPECT_EQ(filtered(0.3F), light);
+    EXPECT_EQ(filtered(0.5F), glm::vec3(0.1F, 0.4F, 0.5F));
+    EXPECT_EQ(filtered(0.6F), glm::vec3(0.1F, 0.4F, 0.5F));
+    EXPECT_EQ(filtered(0.7F), glm::vec3(0.0F));
+    // Two opaque texels: full shadow behind either, which widens shadows by a row (section 4.1, 4).
+    EXPECT_EQ(light_through({0.3F, {1, 1, 1, 1}}, wall, 0.5F, light), glm::vec3(0.0F));
+}
+
+TEST(Deferred, S003_D12_Equation33) {
+    EXPECT_FLOAT_EQ(traces::laid_over(glm::vec3(0.8F), glm::vec3(0.2F), 0.25F).r, 0.65F);
+}
+
+// A pixel that differs has a pane in the full picture, or lies below or above one.
+TEST(Deferred, S003_D15_InterlacingChangesTransparentPixelsAndTheirBordersOnly) {
+    const Settings common{"lights=2", "shadows=none", "refraction=false"};
+    Settings whole = common;
+    whole.emplace_back("method=dp");
+    const Replay pm = deferred(common), dp = deferred(whole);
+    const std::vector<float> nearest = colours(dp, surfaces_of(dp), "colours");
+    const auto pane = [&](std::size_t x, std::size_t y) { return nearest[(y * width + x) * 4 + 3] < 1.0F; };
+    std::size_t differing = 0, equal_panes = 0;
+    for (std::size_t y = 0; y < height; ++y)
+        for (std::size_t x = 0; x < width; ++x) {
+            const std::size_t at = (y * width + x) * 4;
+            const bool same =
+                std::equal(&pm.reference.colour[at], &pm.reference.colour[at + 4], &dp.reference.colour[at]);
+            equal_panes += same && pane(x, y) ? 1 : 0;
+            if (same) continue;
+            ++differing;
+            EXPECT_TRUE(pane(x, y) || (y > 0 && pane(x, y - 1)) || (y + 1 < height && pane(x, y + 1))) << x << ' ' << y;
+        }
+    EXPECT_GT(differing, 100U);
+    EXPECT_GT(equal_panes, 20U); // those on odd rows before a smooth background
+}
+
+TEST(Deferred, S003_D16_NothingToBreak) {
+    for (const char* method : {"method=pm", "method=dp"}) {
+        const Replay replay = deferred({"lights=2", method});
+        for (const char* design : {"existing", "blender"}) {
+            const pipeline::RunResult run = replay.run(design);
+            EXPECT_EQ(run.hazards.total(), 0U);
+            EXPECT_EQ(run.wrong_pixels, 0U);
+            EXPECT_GE(run.judgements.size(), 5U);
+            for (const pipeline::PassJudgement& judgement : run.judgements)
+                EXPECT_EQ(judgement.wrong_places, 0U) << judgement.pass << ' ' << judgement.surface;
+        }
+    }
+}
+
+TEST(Deferred, S003_D17_AnAccumulatorOfEightBits) {
+    const auto sum = [](std::uint32_t lights, float each) {
+        glm::vec4 texel(0.0F);
+        for (std::uint32_t i = 0; i < lights; ++i)
+            texel = write_colour(SurfaceFormat::rgba8, pipeline::blends::of(pipeline::blends::sum), 15, glm::vec4(each),
+                                 texel);
+        return texel.r;
+    };
+    EXPECT_EQ(sum(254, 1.0F / 255.0F), 254.0F / 255.0F);
+    EXPECT_EQ(sum(255, 1.0F / 255.0F), 1.0F);
+    EXPECT_EQ(sum(256, 1.0F / 255.0F), 1.0F); // clamped
+    EXPECT_EQ(sum(512, 0.4F / 255.0F), 0.0F);
+    EXPECT_EQ(sum(64, 0.6F / 255.0F), 64.0F / 255.0F); // rounded up, each
+}
+
+TEST(Deferred, ShadowsOfGlassAreColouredAndThoseOfBallsAreBlack) {
+    const auto lit = [](const char* shadows) {
+        const Replay replay = deferred({"lights=1", "ambient=0", "bias=0.01", shadows}, showroom, "map_size=1024");
+        double sum = 0.0;
+        for (std::size_t i = 0; i < replay.reference.colour.size(); ++i)
+            if (i % 4 != 3) sum += static_cast<double>(replay.reference.colour[i]);
+        return sum;
+    };
+    const double none = lit("shadows=none"), opaque = lit("shadows=opaque"), transparent = lit("shadows=transparent");
+    EXPECT_LT(transparent, 0.95 * none);
+    EXPECT_LT(opaque, 0.95 * transparent); // glass lets some of it through
+}
+
+TEST(Deferred, WithoutLightsOnlyTheAmbientIsLeft) {
+    const Replay replay = deferred({"lights=0", "ambient=0.5", "refraction=false"}, "gen:showroom?transparent=0");
+    const std::vector<float> surface = colours(replay, surfaces_of(replay), "colours");
+    for (std::size_t i = 0; i < surface.size(); i += 4)
+        for (std::size_t c = 0; c < 3; ++c)
+            EXPECT_NEAR(replay.reference.colour[i + c], surface[i + c] * 128.0F / 255.0F, 0.5F / 255.0F);
+}
+
+TEST(Deferred, AVolumeHoldsAllThatItsLightReaches) {
+    traces::SpotLight light;
+    light.place = {1.0, 2.0, 3.0};
+    light.direction = glm::normalize(glm::dvec3(1.0, -2.0, 0.5));
+    light.range = 5.0;
+    const glm::dmat4 to_cone = glm::inverse(light.volume());
+    std::size_t lit = 0;
+    for (int i = 0; i < 4000; ++i) {
+        const glm::dvec3 at = light.place + glm::dvec3(i % 20 - 10, i / 20 % 20 - 10, i / 400 - 5) * 0.5;
+        const glm::dvec3 inside(to_cone * glm::dvec4(at, 1.0));
+        const bool within = inside.z <= 0.0 && inside.z >= -1.0 && std::hypot(inside.x, inside.y) <= -inside.z + 1e-12;
+        if (light.arrives(at) == 0.0) continue;
+        ++lit;
+        EXPECT_TRUE(within) << i;
+        EXPECT_TRUE(light.touches(at, 0.0)) << i;
+    }
+    EXPECT_GT(lit, 20U);
+    EXPECT_EQ(light.arrives(light.place + light.direction * 5.0), 0.0);
+    EXPECT_GT(light.arrives(light.place + light.direction * 4.999), 0.0);
+}
+
+// Within, the back faces are drawn; right outside, the front ones. The picture changes by no more than the step does.
+TEST(Deferred, TheEyeMayLieWithinTheVolumeOfALight) {
+    for (const char* camera : {"0,1.2,0,0.5,0,-1,60", "0,0.5,4,0,0.4,0,60"}) {
+        support::ReplayOptions options;
+        options.width = 64;
+        options.height = 48;
+        options.workload = "deferred";
+        options.camera = camera;
+        options.knobs = {"lights=8", "shadows=none", "ambient=0"};
+        const Replay replay(showroom, options);
+        std::size_t lit = 0;
+        for (const float value : replay.reference.colour) lit += value > 0.05F ? 1 : 0;
+        EXPECT_GT(lit, replay.reference.colour.size() / 4 + 64U * 48 / 4)
+            << camera; // alpha, and a quarter of the pixels
+    }
+}
+
+std::string error_of(const Settings& settings, const std::string& scene = "gen:slabs", std::uint32_t samples = 1) {
+    try {
+        support::ReplayOptions options;
+        options.workload = "deferred";
+        options.knobs = settings;
+        options.samples = samples;
+        const Replay replay(scene, options);
+    } catch (const sim::InputError& error) {
+        return error.what();
+    }
+    return {};
+}
+
+TEST(Deferred, BadInputIsToldInOneLine) {
+    EXPECT_EQ(error_of({"lights=65"}), "workload deferred: lights: expected whole number 0 to 64, got 65");
+    EXPECT_EQ(error_of({"lights=-1"}), "workload deferred: lights: expected whole number 0 to 64, got -1");
+    EXPECT_EQ(error_of({"method=pn"}),
+              R"(workload deferred: method: expected one of pm | dp, got "pn"; did you mean 'pm'?)");
+    EXPECT_EQ(error_of({}, "gen:stack"),
+              "workload deferred: expected a scene with places in a world, those of gen:stack are on the screen");
+    EXPECT_EQ(error_of({}, "gen:slabs", 4),
+              "--samples: expected 1 with workload deferred, whose rows are told apart by number, got 4");
+}
+
+} // namespace workload_deferred_test

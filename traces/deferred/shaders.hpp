@@ -1,0 +1,73 @@
+// The shaders of deferred shading with one transparent layer: G-buffer, shadow map, light, composition.
+//
+// Instructions are the arithmetic slots that the thesis counted where it counted them (section 4.2: light 66 and 82,
+// composition 14 and 27); its texture slots are what the code reads. G-buffer and shadow map were not counted: theirs
+// are those of the operations written here. Both sides of a branch are issued, as the text says of its machine.
+// Source: Aladağlı 2015, chapter 3 (specification 003, B3 to B8).
+#pragma once
+
+#include "pipeline/frame.hpp"
+#include "traces/deferred/spot_lights.hpp"
+
+#include <memory>
+#include <vector>
+
+namespace traces {
+
+/// What a fragment's draw says beside colour and normal.
+struct DeferredDraw {
+    float opacity = 1.0F;      ///< of a transmitting material; scales the alpha of its colour
+    bool double_sided = false; ///< its back faces are lit as well, from behind
+    bool mirrored = false;     ///< its front faces are clockwise
+};
+std::vector<DeferredDraw> deferred_draws(const pipeline::Frame& frame);
+
+/// Which fragments a G-buffer keeps.
+enum class Layer : std::uint8_t {
+    interlaced, ///< even rows: opaque ones; odd rows: all
+    nearest,    ///< all
+    behind      ///< opaque ones behind the depth that its only surface holds
+};
+
+struct GBufferOptions {
+    Layer layer = Layer::interlaced;
+    float specular = 0.3F;        ///< of all materials
+    float specular_power = 32.0F; ///< 0 to 255
+};
+/// Outputs: colour and opacity; normal in the world, from [-1,1] to [0,1]; specular intensity and power / 255; window
+/// depth.
+std::shared_ptr<const pipeline::Shader> gbuffer_shader(const pipeline::Frame& frame, const GBufferOptions& options);
+
+enum class Shadows : std::uint8_t { none, opaque, transparent };
+
+/// Outputs: window depth and, with transparent shadows, colour and opacity; then even rows keep opaque fragments alone.
+std::shared_ptr<const pipeline::Shader> shadow_shader(const pipeline::Frame& frame, Shadows shadows);
+
+struct LightOptions {
+    Shadows shadows = Shadows::transparent;
+    std::uint32_t map_size = 1024;
+    double bias = 1e-3; ///< over the range of the light: receivers come that much nearer to it
+    double intensity = 1.0;
+};
+/// Reads normals, specular, depth and the shadow map's targets; output: diffuse light, and specular in alpha.
+std::shared_ptr<const pipeline::Shader> light_shader(const pipeline::View& eye, const SpotLight& light,
+                                                     const LightOptions& options);
+
+struct CompositionOptions {
+    bool refraction = true;
+    double coefficient = 0.03; ///< of the picture's height: the offset of a normal across the view
+};
+/// Takes the rows of an interlaced G-buffer apart. Reads colours, light and, with refraction, normals and depths.
+std::shared_ptr<const pipeline::Shader> interlaced_composition(const pipeline::View& eye,
+                                                               const CompositionOptions& options);
+/// Lays the nearest surfaces over those behind. Reads colours, light, normals and depths of the nearest, then colours,
+/// light and depths of the others.
+std::shared_ptr<const pipeline::Shader> peeled_composition(const pipeline::View& eye,
+                                                           const CompositionOptions& options);
+
+} // namespace traces
+
+template <>
+struct sim::EnumNames<traces::Shadows> {
+    static constexpr std::array<std::string_view, 3> names{"none", "opaque", "transparent"};
+};

@@ -1,0 +1,242 @@
+// Deferred shading of one transparent layer with coloured shadows and refraction.
+//
+// Method pm: rows of one G-buffer take turns, opaque surfaces alone and the nearest of all, so that one geometry pass
+// holds a pane and what lies behind it at half the rows; shadow maps do the same; a pass over the screen takes the rows
+// apart. Method dp: a second G-buffer is peeled behind the first, both at full resolution, both lit.
+// Source: Aladağlı 2015 (specification 003, sections 1.1 to 1.6).
+#include "pipeline/functional/eye_depth.hpp"
+#include "sim/check.hpp"
+#include "traces/deferred/shaders.hpp"
+#include "traces/pass_graph.hpp"
+#include "traces/workloads/methods.hpp"
+
+#include <algorithm>
+#include <array>
+#include <fmt/format.h>
+#include <numeric>
+
+namespace traces {
+
+enum class DeferredMethod : std::uint8_t { pm, dp };
+
+} // namespace traces
+
+template <>
+struct sim::EnumNames<traces::DeferredMethod> {
+    static constexpr std::array<std::string_view, 2> names{"pm", "dp"};
+};
+
+namespace traces {
+
+namespace {
+
+constexpr const char* workload_deferred = "workload deferred";
+
+struct DeferredParams {
+    DeferredMethod method = DeferredMethod::pm;
+    std::uint32_t lights = 4;
+    Shadows shadows = Shadows::transparent;
+    bool refraction = true;
+    double refraction_coefficient = 0.03;
+    std::uint32_t map_size = 1024;
+    double bias = 1e-3;
+    double intensity = 1.0;
+    float ambient = 0.1F;
+    float specular = 0.3F;
+    float specular_power = 32.0F;
+
+    static constexpr auto fields() {
+        using P = DeferredParams;
+        return std::tuple(
+            sim::field<&P::method>("pm: one G-buffer, whose rows take turns; dp: two, of which the second is peeled"),
+            sim::field<&P::lights>("spot lights: those of the scene first, then some around it")
+                .unit("lights")
+                .range(0, 64),
+            sim::field<&P::shadows>("none, opaque (of all surfaces), transparent (panes let their colour pass)"),
+            sim::field<&P::refraction>("panes show what lies aside of what is behind them"),
+            sim::field<&P::refraction_coefficient>("offset of a normal across the view, over the picture's height")
+                .range(0.0, 1.0),
+            sim::field<&P::map_size>("edge of the shadow maps").unit("texels").range(2, 8192),
+            sim::field<&P::bias>("that receivers come nearer to the light, over its range").range(0.0, 1.0),
+            sim::field<&P::intensity>("of each light").range(0.0, 1000.0),
+            sim::field<&P::ambient>("light that reaches every surface").range(0.0F, 1.0F),
+            sim::field<&P::specular>("of all surfaces").range(0.0F, 1.0F),
+            sim::field<&P::specular_power>("of all surfaces").range(0.0F, 255.0F));
+    }
+};
+static_assert(sim::fully_described<DeferredParams>);
+
+void check(const Scene& scene, const pipeline::View& view) {
+    if (scene.screen_space)
+        throw sim::InputError(fmt::format("{}: expected a scene with places in a world, those of {} are on the screen",
+                                          workload_deferred, scene.name));
+    if (view.samples != 1)
+        throw sim::InputError(fmt::format(
+            "--samples: expected 1 with workload deferred, whose rows are told apart by number, got {}", view.samples));
+    if (!pipeline::EyeDepth(view.projection).perspective())
+        throw sim::InputError(
+            fmt::format("{}: expected a perspective camera, got a parallel projection", workload_deferred));
+}
+
+/// The names of a G-buffer's surfaces and of the light on them.
+struct GBuffer {
+    std::string colours, normals, specular, depths, light;
+
+    explicit GBuffer(const std::string& which)
+        : colours("colours" + which),
+          normals("normals" + which),
+          specular("specular" + which),
+          depths("depths" + which),
+          light("light" + which) {}
+    std::vector<std::string> targets() const { return {colours, normals, specular, depths}; }
+};
+
+class DeferredGraph {
+  public:
+    DeferredGraph(const Scene& scene, pipeline::Frame frame, const DeferredParams& params)
+        : params_(params), eye_(frame.view), all_(frame.draws.size()), lights_(spot_lights(scene, params.lights)) {
+        std::iota(all_.begin(), all_.end(), 0U);
+        volumes_ = add_light_volumes(frame, lights_);
+        frame_ = frame;
+        graph_.emplace(std::move(frame));
+        build();
+    }
+
+    pipeline::Frame lower() const { return graph_->lower(); }
+
+  private:
+    bool peels() const { return params_.method == DeferredMethod::dp; }
+
+    void build() {
+        add_gbuffer(nearest_, peels() ? Layer::nearest : Layer::interlaced, "G-buffer");
+        if (peels()) add_gbuffer(behind_, Layer::behind, "G-buffer behind");
+        graph_->add_surface("shadow depths", pipeline::SurfaceFormat::r32f, glm::vec4(1.0F));
+        graph_->add_surface("shadow colours", pipeline::SurfaceFormat::rgba8, glm::vec4(0, 0, 0, 1));
+        graph_->add_surface("shadow z", pipeline::SurfaceFormat::d24);
+        const glm::vec4 ambient(glm::vec3(params_.ambient), 0.0F);
+        graph_->add_surface(nearest_.light, pipeline::SurfaceFormat::rgba8, ambient);
+        graph_->add_surface(behind_.light, pipeline::SurfaceFormat::rgba8, ambient);
+        graph_->add_clear("clear light",
+                          peels() ? std::vector{nearest_.light, behind_.light} : std::vector{nearest_.light});
+        for (std::size_t i = 0; i < lights_.size(); ++i) {
+            if (params_.shadows != Shadows::none) add_shadow_map(i);
+            add_light(i, nearest_, fmt::format("light {}", i));
+            if (peels()) add_light(i, behind_, fmt::format("light {} behind", i));
+        }
+        add_composition();
+        graph_->output("picture");
+    }
+
+    void add_gbuffer(const GBuffer& names, Layer layer, const std::string& name) {
+        graph_->add_surface(names.colours, pipeline::SurfaceFormat::rgba8, glm::vec4(0, 0, 0, 1));
+        graph_->add_surface(names.normals, pipeline::SurfaceFormat::rgb10a2, glm::vec4(0.5F, 0.5F, 0.5F, 0.0F));
+        graph_->add_surface(names.specular, pipeline::SurfaceFormat::rgba8);
+        graph_->add_surface(names.depths, pipeline::SurfaceFormat::r32f, glm::vec4(1.0F));
+        std::vector<std::string> cleared = names.targets();
+        cleared.emplace_back(depth_surface);
+        graph_->add_clear("clear " + name, std::move(cleared));
+        ShadedPass pass;
+        pass.name = name;
+        pass.shader = gbuffer_shader(frame_, {layer, params_.specular, params_.specular_power});
+        if (layer == Layer::behind) pass.reads = {nearest_.depths};
+        pass.targets = names.targets();
+        pass.draws = all_;
+        pass.depth = depth_surface;
+        pass.states[0].depth.test = pass.states[0].depth.write = true;
+        graph_->add_shaded(std::move(pass));
+    }
+
+    // One map serves all lights, one after the other.
+    void add_shadow_map(std::size_t light) {
+        std::vector<std::string> targets{"shadow depths"};
+        if (params_.shadows == Shadows::transparent) targets.emplace_back("shadow colours");
+        std::vector<std::string> cleared = targets;
+        cleared.emplace_back("shadow z");
+        graph_->add_clear(fmt::format("clear shadow {}", light), std::move(cleared));
+        ShadedPass pass;
+        pass.name = fmt::format("shadow {}", light);
+        pass.shader = shadow_shader(frame_, params_.shadows);
+        pass.targets = std::move(targets);
+        pass.draws = all_;
+        pass.depth = "shadow z";
+        pass.states[0].depth.test = pass.states[0].depth.write = true;
+        pass.view = lights_[light].view(params_.map_size);
+        graph_->add_shaded(std::move(pass));
+    }
+
+    // Front faces are left out where the eye is within the volume, as they lie behind it.
+    void add_light(std::size_t light, const GBuffer& lit, std::string name) {
+        ShadedPass pass;
+        pass.name = std::move(name);
+        pass.shader =
+            light_shader(eye_, lights_[light], {params_.shadows, params_.map_size, params_.bias, params_.intensity});
+        pass.reads = {lit.normals, lit.specular, lit.depths};
+        if (params_.shadows != Shadows::none) pass.reads.emplace_back("shadow depths");
+        if (params_.shadows == Shadows::transparent) pass.reads.emplace_back("shadow colours");
+        pass.targets = {lit.light};
+        pass.draws = {volumes_[light]};
+        pipeline::RasterState& state = pass.states[0];
+        state.blend[0] = pipeline::blends::of(pipeline::blends::sum);
+        state.depth.clamp = true;
+        state.culling = eye_touches(lights_[light]) ? pipeline::FaceCulling::front : pipeline::FaceCulling::back;
+        graph_->add_shaded(std::move(pass));
+    }
+
+    bool eye_touches(const SpotLight& light) const {
+        const glm::dvec4 corner = glm::inverse(glm::dmat4(eye_.projection)) * glm::dvec4(1.0, 1.0, -1.0, 1.0);
+        return light.touches(glm::dvec3(glm::inverse(glm::dmat4(eye_.view))[3]),
+                             glm::length(glm::dvec3(corner) / corner.w));
+    }
+
+    void add_composition() {
+        graph_->add_surface("picture", pipeline::SurfaceFormat::rgba8);
+        ShadedPass pass;
+        pass.name = "composition";
+        pass.screen = true;
+        pass.targets = {"picture"};
+        const CompositionOptions options{params_.refraction, params_.refraction_coefficient};
+        pass.reads = {nearest_.colours, nearest_.light};
+        if (peels()) {
+            pass.shader = peeled_composition(eye_, options);
+            pass.reads = {nearest_.colours, nearest_.light, nearest_.normals, nearest_.depths,
+                          behind_.colours,  behind_.light,  behind_.depths};
+        } else {
+            pass.shader = interlaced_composition(eye_, options);
+            if (params_.refraction) pass.reads.insert(pass.reads.end(), {nearest_.normals, nearest_.depths});
+        }
+        graph_->add_shaded(std::move(pass));
+    }
+
+    DeferredParams params_;
+    pipeline::View eye_;
+    std::vector<std::uint32_t> all_, volumes_;
+    std::vector<SpotLight> lights_;
+    pipeline::Frame frame_;
+    std::optional<PassGraph> graph_;
+    GBuffer nearest_{""}, behind_{" behind"};
+};
+
+pipeline::Frame build(const Scene& scene, const pipeline::View& view, const DeferredParams& params) {
+    check(scene, view);
+    pipeline::Frame frame = frame_of(scene, view);
+    frame.background = glm::vec4(0, 0, 0, 1);
+    const bool smooth = std::all_of(frame.draws.begin(), frame.draws.end(), [&](const pipeline::Draw& draw) {
+        return frame.resources->geometries[draw.geometry].find(pipeline::Semantic::normal) != nullptr;
+    });
+    if (!smooth) frame.notes.emplace_back("some draws have no normals: those of their triangles are taken");
+    return DeferredGraph(scene, std::move(frame), params).lower();
+}
+
+} // namespace
+
+Workload deferred_workload() {
+    Workload workload = make_workload<DeferredParams>(
+        "deferred", "deferred shading of one transparent layer, with coloured shadows and refraction", build);
+    workload.quality = {{"method", {"pm", "dp"}},
+                        {"map_size", {"256", "512", "1024", "2048"}},
+                        {"shadows", {"none", "opaque", "transparent"}},
+                        {"refraction", {"false", "true"}}};
+    return workload;
+}
+
+} // namespace traces

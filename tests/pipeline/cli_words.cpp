@@ -314,13 +314,14 @@ TEST(CliWords, CASE_F10_OneMeaningOfAcmr) {
     const TemporaryFolder folder;
     const std::string strips = (folder.path() / "s.glb").string();
     ASSERT_EQ(run_program({"geometry", "gen:blob?triangles=800", "--prepare", "strips", "--export", strips}).status, 0);
-    for (const char* fidelity : {"estimate", "detailed"})
-        for (const json& one :
-             json::parse(run_program({"geometry", strips, "--json", "--fidelity", fidelity}).out)["cases"]) {
+    for (const char* fidelity : {"estimate", "detailed"}) {
+        const json result = json::parse(run_program({"geometry", strips, "--json", "--fidelity", fidelity}).out);
+        for (const json& one : result["cases"]) {
             if (one["mesh"]["draws"] != 1) continue;
             EXPECT_DOUBLE_EQ(one["mesh"]["acmr"].get<double>(), one["draws"][0]["acmr"].get<double>())
                 << one["name"] << " " << fidelity;
         }
+    }
 }
 
 TEST(CliWords, EqualMachinesRunOnce) {

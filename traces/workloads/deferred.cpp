@@ -40,6 +40,7 @@ struct DeferredParams {
     double refraction_coefficient = 0.03;
     std::uint32_t map_size = 1024;
     double bias = 1e-3;
+    float slope_bias = 2.0F;
     double intensity = 1.0;
     float ambient = 0.1F;
     float specular = 0.3F;
@@ -58,6 +59,10 @@ struct DeferredParams {
                 .range(0.0, 1.0),
             sim::field<&P::map_size>("edge of the shadow maps").unit("texels").range(2, 8192),
             sim::field<&P::bias>("that receivers come nearer to the light, over its range").range(0.0, 1.0),
+            sim::field<&P::slope_bias>(
+                "of the depths in shadow maps, in changes from one texel to the next: a point asks "
+                "two texels, of which one may lie that far away")
+                .range(0.0F, 1000.0F),
             sim::field<&P::intensity>("of each light").range(0.0, 1000.0),
             sim::field<&P::ambient>("light that reaches every surface").range(0.0F, 1.0F),
             sim::field<&P::specular>("of all surfaces").range(0.0F, 1.0F),
@@ -160,6 +165,7 @@ class DeferredGraph {
         pass.draws = all_;
         pass.depth = "shadow z";
         pass.states[0].depth.test = pass.states[0].depth.write = true;
+        pass.states[0].depth.bias_slope = params_.slope_bias;
         pass.view = lights_[light].view(params_.map_size);
         graph_->add_shaded(std::move(pass));
     }

@@ -1,5 +1,6 @@
 #include "traces/deferred/shaders.hpp"
 
+#include "traces/deferred/quad_places.hpp"
 #include "traces/deferred/shadow_filter.hpp"
 
 #include <algorithm>
@@ -17,33 +18,7 @@ using pipeline::ShaderOutput;
 using pipeline::ShaderShape;
 using pipeline::SurfaceAccess;
 
-constexpr unsigned even_rows = 0b0011; ///< of a quad
-constexpr float behind_eps = 1e-6F;    ///< equal depths of two passes are one surface
-
-struct Places {
-    LaneIndices x{}, y{};
-
-    explicit Places(const ShaderInput& input) {
-        for (std::size_t i = 0; i < 4; ++i) {
-            x[i] = static_cast<std::int32_t>(input.x + i % 2);
-            y[i] = static_cast<std::int32_t>(input.y + i / 2);
-        }
-    }
-};
-
-/// As eight bits keep it.
-bool is_transparent(float opacity) { return std::lround(std::clamp(opacity, 0.0F, 1.0F) * 255.0F) < 255; }
-
-unsigned transparent_pixels(const QuadTexels& colours) {
-    unsigned pixels = 0;
-    for (std::size_t i = 0; i < 4; ++i) pixels |= (is_transparent(colours[i].a) ? 1U : 0U) << i;
-    return pixels;
-}
-
-QuadTexels with_opacity(QuadTexels colours, const DeferredDraw& draw) {
-    for (glm::vec4& colour : colours) colour.a *= draw.opacity;
-    return colours;
-}
+constexpr float behind_eps = 1e-6F; ///< equal depths of two passes are one surface
 
 class GBufferShader final : public pipeline::Shader {
   public:
@@ -90,6 +65,40 @@ class GBufferShader final : public pipeline::Shader {
     GBufferOptions options_;
 };
 
+/// What forward rendering begins with: the ambient share of the colours, normals and, if asked for, depths.
+class AmbientShader final : public pipeline::Shader {
+  public:
+    AmbientShader(const pipeline::Frame& frame, float ambient, bool depths)
+        : draws_(deferred_draws(frame)),
+          to_world_(glm::transpose(glm::mat3(frame.view.view))),
+          ambient_(ambient),
+          depths_(depths) {}
+
+    ShaderShape shape() const override {
+        return {
+            .outputs = depths_ ? 3U : 2U, .registers = 5, .colour = pipeline::FragmentColour::unlit, .normal = true};
+    }
+
+    void shade(const ShaderInput& input, SurfaceAccess& surfaces, ShaderOutput& output) const override {
+        surfaces.issue(2 + 1 + 3 + 1, input.pixels); // test of opacity, ambient, normal to the world, to [0,1]
+        const DeferredDraw& draw = draws_[input.draw];
+        const QuadTexels colours = with_opacity(input.colour, draw);
+        output.alive &= ~(transparent_pixels(colours) & even_rows);
+        const float side = draw.double_sided && input.front == draw.mirrored ? -0.5F : 0.5F;
+        for (std::size_t i = 0; i < 4; ++i) {
+            output.colours[0][i] = glm::vec4(glm::vec3(colours[i]) * ambient_, colours[i].a);
+            output.colours[1][i] = glm::vec4(to_world_ * glm::vec3(input.normal[i]) * side + 0.5F, 0.0F);
+            output.colours[2][i].r = input.depth[i];
+        }
+    }
+
+  private:
+    std::vector<DeferredDraw> draws_;
+    glm::mat3 to_world_;
+    float ambient_;
+    bool depths_;
+};
+
 class ShadowShader final : public pipeline::Shader {
   public:
     ShadowShader(const pipeline::Frame& frame, Shadows shadows) : draws_(deferred_draws(frame)), shadows_(shadows) {}
@@ -111,115 +120,6 @@ class ShadowShader final : public pipeline::Shader {
   private:
     std::vector<DeferredDraw> draws_;
     Shadows shadows_;
-};
-
-class LightShader final : public pipeline::Shader {
-  public:
-    LightShader(const pipeline::View& eye, const SpotLight& light, const LightOptions& options)
-        : light_(light),
-          options_(options),
-          eye_(glm::inverse(glm::dmat4(eye.view))[3]),
-          to_world_(glm::inverse(glm::dmat4(eye.projection) * glm::dmat4(eye.view))),
-          pixel_(2.0 / eye.width, 2.0 / eye.height) {
-        const pipeline::View map = light.view(options.map_size);
-        to_map_ = glm::dmat4(map.projection) * glm::dmat4(map.view);
-    }
-
-    ShaderShape shape() const override {
-        const std::uint32_t maps = options_.shadows == Shadows::none ? 0 : options_.shadows == Shadows::opaque ? 1 : 2;
-        return {.reads = 3 + maps, .registers = 8};
-    }
-
-    void shade(const ShaderInput& input, SurfaceAccess& surfaces, ShaderOutput& output) const override {
-        const Places at(input);
-        const QuadTexels normals = surfaces.fetch(0, at.x, at.y, input.pixels);
-        const QuadTexels specular = surfaces.fetch(1, at.x, at.y, input.pixels);
-        const QuadTexels depths = surfaces.fetch(2, at.x, at.y, input.pixels);
-        std::array<glm::dvec3, 4> points;
-        for (std::size_t i = 0; i < 4; ++i) points[i] = place(at.x[i], at.y[i], depths[i].r);
-        const auto arriving = through_shadows(points, input.pixels, surfaces);
-        for (std::size_t i = 0; i < 4; ++i)
-            if (depths[i].r < 1.0F) // there is a surface
-                output.colours[0][i] = reflected(points[i], glm::vec3(normals[i]), specular[i], arriving[i]);
-    }
-
-  private:
-    glm::dvec3 place(std::int32_t x, std::int32_t y, float depth) const {
-        const glm::dvec4 at = to_world_ * glm::dvec4((x + 0.5) * pixel_.x - 1.0, 1.0 - (y + 0.5) * pixel_.y,
-                                                     2.0 * static_cast<double>(depth) - 1.0, 1.0);
-        return glm::dvec3(at) / at.w;
-    }
-
-    /// Equation 2.1 for one light.
-    glm::vec4 reflected(const glm::dvec3& point, const glm::vec3& normal_code, const glm::vec4& specular,
-                        const glm::vec3& light) const {
-        const glm::dvec3 normal = glm::dvec3(normal_code) * 2.0 - 1.0;
-        const glm::dvec3 to_light = glm::normalize(light_.place - point);
-        const double facing = glm::dot(normal, to_light);
-        if (!(facing > 0.0)) return glm::vec4(0.0F);
-        const glm::dvec3 mirrored = 2.0 * facing * normal - to_light;
-        const double along = std::max(glm::dot(mirrored, glm::normalize(eye_ - point)), 0.0);
-        const double shine = static_cast<double>(specular.r) * std::pow(along, static_cast<double>(specular.g) * 255.0);
-        const double share = options_.intensity * light_.arrives(point);
-        const glm::dvec3 diffuse = glm::dvec3(light) * (facing * share);
-        return glm::vec4(diffuse, shine * share * std::max({light.r, light.g, light.b}));
-    }
-
-    std::array<glm::vec3, 4> through_shadows(const std::array<glm::dvec3, 4>& points, unsigned pixels,
-                                             SurfaceAccess& surfaces) const {
-        constexpr std::uint32_t slots_opaque = 66, slots_transparent = 82;
-        constexpr std::uint32_t slots_of_projection = 10; // four dots, reciprocal, scale and bias, compare, multiply
-        std::array<glm::vec3, 4> light;
-        light.fill(glm::vec3(light_.colour));
-        if (options_.shadows == Shadows::none) {
-            surfaces.issue(slots_opaque - slots_of_projection, pixels);
-            return light;
-        }
-        LaneIndices x{}, y{}, other{};
-        std::array<float, 4> depth{};
-        for (std::size_t i = 0; i < 4; ++i) {
-            const glm::dvec3 nearer =
-                points[i] + glm::normalize(light_.place - points[i]) * (options_.bias * light_.range);
-            const glm::dvec4 seen = to_map_ * glm::dvec4(nearer, 1.0);
-            const glm::dvec3 ndc = seen.w > 0.0 ? glm::dvec3(seen) / seen.w : glm::dvec3(2.0);
-            const auto size = static_cast<double>(options_.map_size);
-            const auto texel = [size](double at) {
-                return static_cast<std::int32_t>(std::floor(std::clamp(at, -1.0, 2.0) * size));
-            };
-            x[i] = texel(0.5 + 0.5 * ndc.x);
-            y[i] = texel(0.5 - 0.5 * ndc.y);
-            // One row is even and one is odd, at the last row, too.
-            other[i] = y[i] + 1 < static_cast<std::int32_t>(options_.map_size) ? y[i] + 1 : y[i] - 1;
-            depth[i] = static_cast<float>(0.5 + 0.5 * ndc.z);
-        }
-        const QuadTexels here = surfaces.fetch(3, x, y, pixels);
-        if (options_.shadows == Shadows::opaque) {
-            surfaces.issue(slots_opaque, pixels);
-            for (std::size_t i = 0; i < 4; ++i)
-                if (inside(x[i], y[i]) && here[i].r < depth[i]) light[i] = glm::vec3(0.0F);
-            return light;
-        }
-        const QuadTexels there = surfaces.fetch(3, x, other, pixels);
-        const QuadTexels colour_here = surfaces.fetch(4, x, y, pixels);
-        const QuadTexels colour_there = surfaces.fetch(4, x, other, pixels);
-        surfaces.issue(slots_transparent, pixels);
-        for (std::size_t i = 0; i < 4; ++i)
-            if (inside(x[i], y[i]))
-                light[i] =
-                    light_through({here[i].r, colour_here[i]}, {there[i].r, colour_there[i]}, depth[i], light[i]);
-        return light;
-    }
-
-    bool inside(std::int32_t x, std::int32_t y) const {
-        const auto size = static_cast<std::int32_t>(options_.map_size);
-        return x >= 0 && x < size && y >= 0 && y < size;
-    }
-
-    SpotLight light_;
-    LightOptions options_;
-    glm::dvec3 eye_;
-    glm::dmat4 to_world_, to_map_{1.0};
-    glm::dvec2 pixel_;
 };
 
 /// What compositions share: a surface in the light that it got, and where one looks through it.
@@ -259,9 +159,13 @@ class Composition : public pipeline::Shader {
 
 class InterlacedComposition final : public Composition {
   public:
-    using Composition::Composition;
+    InterlacedComposition(const pipeline::View& eye, const CompositionOptions& options, Interlaced what)
+        : Composition(eye, options), what_(what), normals_(what == Interlaced::deferred ? 2 : 1) {}
 
-    ShaderShape shape() const override { return {.reads = refracts() ? 4U : 2U, .registers = 6}; }
+    ShaderShape shape() const override {
+        const std::uint32_t refracting = what_ == Interlaced::forward ? 1 : 2;
+        return {.reads = normals_ + (refracts() ? refracting : 0), .registers = 6};
+    }
 
     void shade(const ShaderInput& input, SurfaceAccess& surfaces, ShaderOutput& output) const override {
         surfaces.issue(refracts() ? slots_refracting : slots_plain, input.pixels);
@@ -277,8 +181,13 @@ class InterlacedComposition final : public Composition {
         for (std::size_t i = 0; i < 4; ++i)
             if (there[i].a < here[i].a) std::swap(front_colour[i], behind_colour[i]);
         if (refracts()) look_through(input.pixels, front, behind, behind_colour, surfaces);
-        const QuadTexels front_light = surfaces.fetch(1, front.x, front.y, input.pixels);
-        const QuadTexels behind_light = surfaces.fetch(1, behind.x, behind.y, input.pixels);
+        QuadTexels front_light, behind_light;
+        front_light.fill(already_lit);
+        behind_light.fill(already_lit);
+        if (what_ == Interlaced::deferred) {
+            front_light = surfaces.fetch(1, front.x, front.y, input.pixels);
+            behind_light = surfaces.fetch(1, behind.x, behind.y, input.pixels);
+        }
         for (std::size_t i = 0; i < 4; ++i) {
             glm::vec3 colour = lit(front_colour[i], front_light[i]);
             if (here[i].a != there[i].a)
@@ -293,10 +202,11 @@ class InterlacedComposition final : public Composition {
         return places;
     }
 
-    /// Another opaque surface than the one right behind, unless that lies in front of the pane.
+    /// Another opaque surface than the one right behind, unless that lies in front of the pane; without depths, unless
+    /// no pane is there (B9).
     void look_through(unsigned pixels, const Places& front, Places& behind, QuadTexels& behind_colour,
                       SurfaceAccess& surfaces) const {
-        const QuadTexels normals = surfaces.fetch(2, front.x, front.y, pixels);
+        const QuadTexels normals = surfaces.fetch(normals_, front.x, front.y, pixels);
         Places through = refracted(front, normals);
         const QuadTexels first = surfaces.fetch(0, through.x, through.y, pixels);
         const Places above = one_above(through);
@@ -307,15 +217,24 @@ class InterlacedComposition final : public Composition {
                 through.y[i] = above.y[i];
                 seen[i] = second[i];
             }
-        const QuadTexels pane = surfaces.fetch(3, front.x, front.y, pixels);
-        const QuadTexels depth = surfaces.fetch(3, through.x, through.y, pixels);
+        unsigned accepted = transparent_pixels(first) | transparent_pixels(second);
+        if (what_ != Interlaced::forward) {
+            const QuadTexels pane = surfaces.fetch(normals_ + 1, front.x, front.y, pixels);
+            const QuadTexels depth = surfaces.fetch(normals_ + 1, through.x, through.y, pixels);
+            for (std::size_t i = 0; i < 4; ++i)
+                accepted = depth[i].r < pane[i].r ? accepted & ~(1U << i) : accepted | 1U << i;
+        }
         for (std::size_t i = 0; i < 4; ++i) {
-            if (depth[i].r < pane[i].r) continue;
+            if ((accepted >> i & 1U) == 0) continue;
             behind.x[i] = through.x[i];
             behind.y[i] = through.y[i];
             behind_colour[i] = seen[i];
         }
     }
+
+    static constexpr glm::vec4 already_lit{1.0F, 1.0F, 1.0F, 0.0F};
+    Interlaced what_;
+    std::uint32_t normals_; ///< the slot of normals, behind which depths are
 };
 
 class PeeledComposition final : public Composition {
@@ -372,18 +291,17 @@ std::shared_ptr<const pipeline::Shader> gbuffer_shader(const pipeline::Frame& fr
     return std::make_shared<const GBufferShader>(frame, options);
 }
 
+std::shared_ptr<const pipeline::Shader> ambient_shader(const pipeline::Frame& frame, float ambient, bool depths) {
+    return std::make_shared<const AmbientShader>(frame, ambient, depths);
+}
+
 std::shared_ptr<const pipeline::Shader> shadow_shader(const pipeline::Frame& frame, Shadows shadows) {
     return std::make_shared<const ShadowShader>(frame, shadows);
 }
 
-std::shared_ptr<const pipeline::Shader> light_shader(const pipeline::View& eye, const SpotLight& light,
-                                                     const LightOptions& options) {
-    return std::make_shared<const LightShader>(eye, light, options);
-}
-
 std::shared_ptr<const pipeline::Shader> interlaced_composition(const pipeline::View& eye,
-                                                               const CompositionOptions& options) {
-    return std::make_shared<const InterlacedComposition>(eye, options);
+                                                               const CompositionOptions& options, Interlaced what) {
+    return std::make_shared<const InterlacedComposition>(eye, options, what);
 }
 
 std::shared_ptr<const pipeline::Shader> peeled_composition(const pipeline::View& eye,

@@ -38,6 +38,9 @@ struct GBufferOptions {
 /// depth.
 std::shared_ptr<const pipeline::Shader> gbuffer_shader(const pipeline::Frame& frame, const GBufferOptions& options);
 
+/// Outputs: the ambient share of the colour, and opacity; normal; window depth, if asked for. Rows as `interlaced`.
+std::shared_ptr<const pipeline::Shader> ambient_shader(const pipeline::Frame& frame, float ambient, bool depths);
+
 enum class Shadows : std::uint8_t { none, opaque, transparent };
 
 /// Outputs: window depth and, with transparent shadows, colour and opacity; then even rows keep opaque fragments alone.
@@ -53,13 +56,25 @@ struct LightOptions {
 std::shared_ptr<const pipeline::Shader> light_shader(const pipeline::View& eye, const SpotLight& light,
                                                      const LightOptions& options);
 
+/// The same on the surfaces that are drawn, in their colour and for additive blending. Reads the shadow map's targets.
+std::shared_ptr<const pipeline::Shader> forward_light_shader(const pipeline::Frame& frame, const SpotLight& light,
+                                                             const LightOptions& options,
+                                                             const GBufferOptions& surfaces);
+
 struct CompositionOptions {
     bool refraction = true;
     double coefficient = 0.03; ///< of the picture's height: the offset of a normal across the view
 };
-/// Takes the rows of an interlaced G-buffer apart. Reads colours, light and, with refraction, normals and depths.
+/// Whose rows a composition takes apart.
+enum class Interlaced : std::uint8_t {
+    deferred,       ///< colours, light and, with refraction, normals and depths
+    forward,        ///< lit colours and, with refraction, normals: panes are known by their opacity alone
+    forward_depths, ///< lit colours and, with refraction, normals and depths
+};
+/// Reads these surfaces.
 std::shared_ptr<const pipeline::Shader> interlaced_composition(const pipeline::View& eye,
-                                                               const CompositionOptions& options);
+                                                               const CompositionOptions& options,
+                                                               Interlaced what = Interlaced::deferred);
 /// Lays the nearest surfaces over those behind. Reads colours, light, normals and depths of the nearest, then colours,
 /// light and depths of the others.
 std::shared_ptr<const pipeline::Shader> peeled_composition(const pipeline::View& eye,

@@ -3,6 +3,7 @@
 // Method pm: rows of one G-buffer take turns, opaque surfaces alone and the nearest of all, so that one geometry pass
 // holds a pane and what lies behind it at half the rows; shadow maps do the same; a pass over the screen takes the rows
 // apart. Method dp: a second G-buffer is peeled behind the first, both at full resolution, both lit.
+// Methods fwd and fw: forward rendering, the geometry once more for each light, rows as in pm; with and without depths.
 // Source: Aladağlı 2015 (specification 003, sections 1.1 to 1.6).
 #include "pipeline/functional/eye_depth.hpp"
 #include "sim/check.hpp"
@@ -17,13 +18,13 @@
 
 namespace traces {
 
-enum class DeferredMethod : std::uint8_t { pm, dp };
+enum class DeferredMethod : std::uint8_t { pm, dp, fwd, fw };
 
 } // namespace traces
 
 template <>
 struct sim::EnumNames<traces::DeferredMethod> {
-    static constexpr std::array<std::string_view, 2> names{"pm", "dp"};
+    static constexpr std::array<std::string_view, 4> names{"pm", "dp", "fwd", "fw"};
 };
 
 namespace traces {
@@ -49,7 +50,9 @@ struct DeferredParams {
     static constexpr auto fields() {
         using P = DeferredParams;
         return std::tuple(
-            sim::field<&P::method>("pm: one G-buffer, whose rows take turns; dp: two, of which the second is peeled"),
+            sim::field<&P::method>(
+                "pm: one G-buffer, whose rows take turns; dp: two, of which the second is peeled; fwd, fw: "
+                "forward rendering with and without stored depths"),
             sim::field<&P::lights>("spot lights: those of the scene first, then some around it")
                 .unit("lights")
                 .range(0, 64),
@@ -110,10 +113,15 @@ class DeferredGraph {
     pipeline::Frame lower() const { return graph_->lower(); }
 
   private:
+    bool forward() const { return params_.method == DeferredMethod::fw || params_.method == DeferredMethod::fwd; }
+    bool stores_depths() const { return params_.method == DeferredMethod::fwd; }
     bool peels() const { return params_.method == DeferredMethod::dp; }
 
     void build() {
-        add_gbuffer(nearest_, peels() ? Layer::nearest : Layer::interlaced, "G-buffer");
+        if (forward())
+            add_ambient();
+        else
+            add_gbuffer(nearest_, peels() ? Layer::nearest : Layer::interlaced, "G-buffer");
         if (peels()) add_gbuffer(behind_, Layer::behind, "G-buffer behind");
         graph_->add_surface("shadow depths", pipeline::SurfaceFormat::r32f, glm::vec4(1.0F));
         graph_->add_surface("shadow colours", pipeline::SurfaceFormat::rgba8, glm::vec4(0, 0, 0, 1));
@@ -121,11 +129,12 @@ class DeferredGraph {
         const glm::vec4 ambient(glm::vec3(params_.ambient), 0.0F);
         graph_->add_surface(nearest_.light, pipeline::SurfaceFormat::rgba8, ambient);
         graph_->add_surface(behind_.light, pipeline::SurfaceFormat::rgba8, ambient);
-        graph_->add_clear("clear light",
-                          peels() ? std::vector{nearest_.light, behind_.light} : std::vector{nearest_.light});
+        if (!forward())
+            graph_->add_clear("clear light",
+                              peels() ? std::vector{nearest_.light, behind_.light} : std::vector{nearest_.light});
         for (std::size_t i = 0; i < lights_.size(); ++i) {
             if (params_.shadows != Shadows::none) add_shadow_map(i);
-            add_light(i, nearest_, fmt::format("light {}", i));
+            forward() ? add_forward_light(i) : add_light(i, nearest_, fmt::format("light {}", i));
             if (peels()) add_light(i, behind_, fmt::format("light {} behind", i));
         }
         add_composition();
@@ -151,11 +160,54 @@ class DeferredGraph {
         graph_->add_shaded(std::move(pass));
     }
 
+    void add_ambient() {
+        graph_->add_surface(nearest_.colours, pipeline::SurfaceFormat::rgba8, glm::vec4(0, 0, 0, 1));
+        graph_->add_surface(nearest_.normals, pipeline::SurfaceFormat::rgb10a2, glm::vec4(0.5F, 0.5F, 0.5F, 0.0F));
+        graph_->add_surface(nearest_.depths, pipeline::SurfaceFormat::r32f, glm::vec4(1.0F));
+        std::vector<std::string> targets{nearest_.colours, nearest_.normals};
+        if (stores_depths()) targets.push_back(nearest_.depths);
+        std::vector<std::string> cleared = targets;
+        cleared.emplace_back(depth_surface);
+        graph_->add_clear("clear", std::move(cleared));
+        ShadedPass pass;
+        pass.name = "ambient";
+        pass.shader = ambient_shader(frame_, params_.ambient, stores_depths());
+        pass.targets = std::move(targets);
+        pass.draws = all_;
+        pass.depth = depth_surface;
+        pass.states[0].depth.test = pass.states[0].depth.write = true;
+        graph_->add_shaded(std::move(pass));
+    }
+
+    // All surfaces once more; what the ambient pass left nearest is lit, and keeps its opacity.
+    void add_forward_light(std::size_t light) {
+        ShadedPass pass;
+        pass.name = fmt::format("light {}", light);
+        pass.shader = forward_light_shader(frame_, lights_[light],
+                                           {params_.shadows, params_.map_size, params_.bias, params_.intensity},
+                                           {Layer::interlaced, params_.specular, params_.specular_power});
+        pass.reads = shadow_maps();
+        pass.targets = {nearest_.colours};
+        pass.draws = all_;
+        pass.depth = depth_surface;
+        pipeline::RasterState& state = pass.states[0];
+        state.depth.test = true;
+        state.depth.compare = pipeline::Compare::less_equal;
+        state.blend[0] = pipeline::blends::of(pipeline::blends::sum);
+        state.write_mask[0] = 0b0111;
+        graph_->add_shaded(std::move(pass));
+    }
+
+    std::vector<std::string> shadow_maps() const {
+        std::vector<std::string> maps;
+        if (params_.shadows != Shadows::none) maps.emplace_back("shadow depths");
+        if (params_.shadows == Shadows::transparent) maps.emplace_back("shadow colours");
+        return maps;
+    }
+
     // One map serves all lights, one after the other.
     void add_shadow_map(std::size_t light) {
-        std::vector<std::string> targets{"shadow depths"};
-        if (params_.shadows == Shadows::transparent) targets.emplace_back("shadow colours");
-        std::vector<std::string> cleared = targets;
+        std::vector<std::string> targets = shadow_maps(), cleared = targets;
         cleared.emplace_back("shadow z");
         graph_->add_clear(fmt::format("clear shadow {}", light), std::move(cleared));
         ShadedPass pass;
@@ -177,8 +229,7 @@ class DeferredGraph {
         pass.shader =
             light_shader(eye_, lights_[light], {params_.shadows, params_.map_size, params_.bias, params_.intensity});
         pass.reads = {lit.normals, lit.specular, lit.depths};
-        if (params_.shadows != Shadows::none) pass.reads.emplace_back("shadow depths");
-        if (params_.shadows == Shadows::transparent) pass.reads.emplace_back("shadow colours");
+        for (std::string& map : shadow_maps()) pass.reads.push_back(std::move(map));
         pass.targets = {lit.light};
         pass.draws = {volumes_[light]};
         pipeline::RasterState& state = pass.states[0];
@@ -206,6 +257,12 @@ class DeferredGraph {
             pass.shader = peeled_composition(eye_, options);
             pass.reads = {nearest_.colours, nearest_.light, nearest_.normals, nearest_.depths,
                           behind_.colours,  behind_.light,  behind_.depths};
+        } else if (forward()) {
+            pass.shader = interlaced_composition(eye_, options,
+                                                 stores_depths() ? Interlaced::forward_depths : Interlaced::forward);
+            pass.reads = {nearest_.colours};
+            if (params_.refraction) pass.reads.push_back(nearest_.normals);
+            if (params_.refraction && stores_depths()) pass.reads.push_back(nearest_.depths);
         } else {
             pass.shader = interlaced_composition(eye_, options);
             if (params_.refraction) pass.reads.insert(pass.reads.end(), {nearest_.normals, nearest_.depths});
@@ -238,7 +295,7 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const Defe
 Workload deferred_workload() {
     Workload workload = make_workload<DeferredParams>(
         "deferred", "deferred shading of one transparent layer, with coloured shadows and refraction", build);
-    workload.quality = {{"method", {"pm", "dp"}},
+    workload.quality = {{"method", {"pm", "dp", "fwd", "fw"}},
                         {"map_size", {"256", "512", "1024", "2048"}},
                         {"shadows", {"none", "opaque", "transparent"}},
                         {"refraction", {"false", "true"}}};

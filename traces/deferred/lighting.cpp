@@ -1,0 +1,190 @@
+#include "traces/deferred/quad_places.hpp"
+#include "traces/deferred/shaders.hpp"
+#include "traces/deferred/shadow_filter.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace traces {
+
+namespace {
+
+using pipeline::LaneIndices;
+using pipeline::QuadTexels;
+using pipeline::ShaderInput;
+using pipeline::ShaderOutput;
+using pipeline::ShaderShape;
+using pipeline::SurfaceAccess;
+
+/// One light, as it falls on points of the picture.
+class Lighting {
+  public:
+    Lighting(const pipeline::View& eye, const SpotLight& light, const LightOptions& options)
+        : light_(light),
+          options_(options),
+          eye_(glm::inverse(glm::dmat4(eye.view))[3]),
+          to_world_(glm::inverse(glm::dmat4(eye.projection) * glm::dmat4(eye.view))),
+          pixel_(2.0 / eye.width, 2.0 / eye.height) {
+        const pipeline::View map = light.view(options.map_size);
+        to_map_ = glm::dmat4(map.projection) * glm::dmat4(map.view);
+    }
+
+    /// Shadow surfaces that it reads.
+    std::uint32_t maps() const {
+        return options_.shadows == Shadows::none ? 0 : options_.shadows == Shadows::opaque ? 1 : 2;
+    }
+
+    glm::dvec3 place(std::int32_t x, std::int32_t y, float depth) const {
+        const glm::dvec4 at = to_world_ * glm::dvec4((x + 0.5) * pixel_.x - 1.0, 1.0 - (y + 0.5) * pixel_.y,
+                                                     2.0 * static_cast<double>(depth) - 1.0, 1.0);
+        return glm::dvec3(at) / at.w;
+    }
+
+    /// Equation 2.1: diffuse light, and specular in alpha. The normal runs from [-1,1] to [0,1].
+    glm::vec4 reflected(const glm::dvec3& point, const glm::vec3& normal_code, const glm::vec4& specular,
+                        const glm::vec3& light) const {
+        const glm::dvec3 normal = glm::dvec3(normal_code) * 2.0 - 1.0;
+        const glm::dvec3 to_light = glm::normalize(light_.place - point);
+        const double facing = glm::dot(normal, to_light);
+        if (!(facing > 0.0)) return glm::vec4(0.0F);
+        const glm::dvec3 mirrored = 2.0 * facing * normal - to_light;
+        const double along = std::max(glm::dot(mirrored, glm::normalize(eye_ - point)), 0.0);
+        const double shine = static_cast<double>(specular.r) * std::pow(along, static_cast<double>(specular.g) * 255.0);
+        const double share = options_.intensity * light_.arrives(point);
+        const glm::dvec3 diffuse = glm::dvec3(light) * (facing * share);
+        return glm::vec4(diffuse, shine * share * std::max({light.r, light.g, light.b}));
+    }
+
+    /// What arrives past the shadows, whose surfaces the shader knows from `first_map` on.
+    std::array<glm::vec3, 4> through_shadows(const std::array<glm::dvec3, 4>& points, unsigned pixels,
+                                             SurfaceAccess& surfaces, std::uint32_t first_map) const {
+        constexpr std::uint32_t slots_opaque = 66, slots_transparent = 82;
+        constexpr std::uint32_t slots_of_projection = 10; // four dots, reciprocal, scale and bias, compare, multiply
+        std::array<glm::vec3, 4> light;
+        light.fill(glm::vec3(light_.colour));
+        if (options_.shadows == Shadows::none) {
+            surfaces.issue(slots_opaque - slots_of_projection, pixels);
+            return light;
+        }
+        LaneIndices x{}, y{}, other{};
+        std::array<float, 4> depth{};
+        for (std::size_t i = 0; i < 4; ++i) {
+            const glm::dvec3 nearer =
+                points[i] + glm::normalize(light_.place - points[i]) * (options_.bias * light_.range);
+            const glm::dvec4 seen = to_map_ * glm::dvec4(nearer, 1.0);
+            const glm::dvec3 ndc = seen.w > 0.0 ? glm::dvec3(seen) / seen.w : glm::dvec3(2.0);
+            const auto size = static_cast<double>(options_.map_size);
+            const auto texel = [size](double at) {
+                return static_cast<std::int32_t>(std::floor(std::clamp(at, -1.0, 2.0) * size));
+            };
+            x[i] = texel(0.5 + 0.5 * ndc.x);
+            y[i] = texel(0.5 - 0.5 * ndc.y);
+            // One row is even and one is odd, at the last row, too.
+            other[i] = y[i] + 1 < static_cast<std::int32_t>(options_.map_size) ? y[i] + 1 : y[i] - 1;
+            depth[i] = static_cast<float>(0.5 + 0.5 * ndc.z);
+        }
+        const QuadTexels here = surfaces.fetch(first_map, x, y, pixels);
+        if (options_.shadows == Shadows::opaque) {
+            surfaces.issue(slots_opaque, pixels);
+            for (std::size_t i = 0; i < 4; ++i)
+                if (inside(x[i], y[i]) && here[i].r < depth[i]) light[i] = glm::vec3(0.0F);
+            return light;
+        }
+        const QuadTexels there = surfaces.fetch(first_map, x, other, pixels);
+        const QuadTexels colour_here = surfaces.fetch(first_map + 1, x, y, pixels);
+        const QuadTexels colour_there = surfaces.fetch(first_map + 1, x, other, pixels);
+        surfaces.issue(slots_transparent, pixels);
+        for (std::size_t i = 0; i < 4; ++i)
+            if (inside(x[i], y[i]))
+                light[i] =
+                    light_through({here[i].r, colour_here[i]}, {there[i].r, colour_there[i]}, depth[i], light[i]);
+        return light;
+    }
+
+  private:
+    bool inside(std::int32_t x, std::int32_t y) const {
+        const auto size = static_cast<std::int32_t>(options_.map_size);
+        return x >= 0 && x < size && y >= 0 && y < size;
+    }
+
+    SpotLight light_;
+    LightOptions options_;
+    glm::dvec3 eye_;
+    glm::dmat4 to_world_, to_map_{1.0};
+    glm::dvec2 pixel_;
+};
+
+class LightShader final : public pipeline::Shader {
+  public:
+    explicit LightShader(const Lighting& lighting) : lighting_(lighting) {}
+
+    ShaderShape shape() const override { return {.reads = 3 + lighting_.maps(), .registers = 8}; }
+
+    void shade(const ShaderInput& input, SurfaceAccess& surfaces, ShaderOutput& output) const override {
+        const Places at(input);
+        const QuadTexels normals = surfaces.fetch(0, at.x, at.y, input.pixels);
+        const QuadTexels specular = surfaces.fetch(1, at.x, at.y, input.pixels);
+        const QuadTexels depths = surfaces.fetch(2, at.x, at.y, input.pixels);
+        std::array<glm::dvec3, 4> points;
+        for (std::size_t i = 0; i < 4; ++i) points[i] = lighting_.place(at.x[i], at.y[i], depths[i].r);
+        const auto arriving = lighting_.through_shadows(points, input.pixels, surfaces, 3);
+        for (std::size_t i = 0; i < 4; ++i)
+            if (depths[i].r < 1.0F) // there is a surface
+                output.colours[0][i] = lighting_.reflected(points[i], glm::vec3(normals[i]), specular[i], arriving[i]);
+    }
+
+  private:
+    Lighting lighting_;
+};
+
+/// The light on the surface that is drawn, for additive blending.
+class ForwardLightShader final : public pipeline::Shader {
+  public:
+    ForwardLightShader(const pipeline::Frame& frame, const Lighting& lighting, const GBufferOptions& options)
+        : draws_(deferred_draws(frame)),
+          to_world_(glm::transpose(glm::mat3(frame.view.view))),
+          lighting_(lighting),
+          specular_(options.specular, options.specular_power / 255.0F, 0.0F, 0.0F) {}
+
+    ShaderShape shape() const override {
+        return {.reads = lighting_.maps(), .registers = 8, .colour = pipeline::FragmentColour::unlit, .normal = true};
+    }
+
+    void shade(const ShaderInput& input, SurfaceAccess& surfaces, ShaderOutput& output) const override {
+        const DeferredDraw& draw = draws_[input.draw];
+        const QuadTexels colours = with_opacity(input.colour, draw);
+        output.alive &= ~(transparent_pixels(colours) & even_rows);
+        const Places at(input);
+        std::array<glm::dvec3, 4> points;
+        for (std::size_t i = 0; i < 4; ++i) points[i] = lighting_.place(at.x[i], at.y[i], input.depth[i]);
+        const auto arriving = lighting_.through_shadows(points, input.pixels, surfaces, 0);
+        const float side = draw.double_sided && input.front == draw.mirrored ? -0.5F : 0.5F;
+        for (std::size_t i = 0; i < 4; ++i) {
+            const glm::vec3 normal = to_world_ * glm::vec3(input.normal[i]) * side + 0.5F;
+            const glm::vec4 light = lighting_.reflected(points[i], normal, specular_, arriving[i]);
+            output.colours[0][i] = glm::vec4(glm::vec3(colours[i]) * glm::vec3(light) + light.a, 0.0F);
+        }
+    }
+
+  private:
+    std::vector<DeferredDraw> draws_;
+    glm::mat3 to_world_;
+    Lighting lighting_;
+    glm::vec4 specular_;
+};
+
+} // namespace
+
+std::shared_ptr<const pipeline::Shader> light_shader(const pipeline::View& eye, const SpotLight& light,
+                                                     const LightOptions& options) {
+    return std::make_shared<const LightShader>(Lighting(eye, light, options));
+}
+
+std::shared_ptr<const pipeline::Shader> forward_light_shader(const pipeline::Frame& frame, const SpotLight& light,
+                                                             const LightOptions& options,
+                                                             const GBufferOptions& surfaces) {
+    return std::make_shared<const ForwardLightShader>(frame, Lighting(frame.view, light, options), surfaces);
+}
+
+} // namespace traces

@@ -124,7 +124,7 @@ class Machine {
     std::vector<PassResult> passes_;
     std::vector<PassJudgement> judgements_;
     std::vector<bool> diverged_; ///< by surface: it is not what the reference of the frame has at this time
-    std::vector<float> layers_; ///< k-buffer content put together from peeled layers
+    std::vector<float> layers_;  ///< k-buffer content put together from peeled layers
     bool textures_linked_ = false;
 };
 

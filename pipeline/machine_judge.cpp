@@ -1,5 +1,5 @@
-// Judgement pass by pass: whoever finds other surfaces than the reference had is held against what the reference of that
-// pass makes of those, so that the faults of one pass are not counted again in all behind it.
+// Judgement pass by pass: whoever finds other surfaces than the reference had is held against what the reference of
+// that pass makes of those, so that the faults of one pass are not counted again in all behind it.
 #include "pipeline/machine_units.hpp"
 
 #include <algorithm>

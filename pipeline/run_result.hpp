@@ -115,7 +115,7 @@ struct RunResult {
     sim::JsonValue area;   ///< as area_json() says
     std::vector<SurfaceResult> surfaces;
     std::vector<PassResult> passes;
-    std::vector<PassJudgement> judgements; ///< of the frame's passes that send fragments, in order
+    std::vector<PassJudgement> judgements;  ///< of the frame's passes that send fragments, in order
     std::vector<std::string> draw_counters; ///< names of DrawResult::counters
     std::vector<DrawResult> draws;
 

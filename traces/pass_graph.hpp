@@ -13,7 +13,7 @@
 
 namespace traces {
 
-/// Names of the surfaces that need not be declared: of the frame's formats, the last two without an own picture.
+/// Names of the surfaces that need not be declared; depth and colours have the formats of the frame.
 inline constexpr const char* depth_surface = "depth";
 inline constexpr const char* colour_surface = "colour";
 inline constexpr const char* kbuffer_surface = "kbuffer";

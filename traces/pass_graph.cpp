@@ -15,7 +15,6 @@
 
 namespace traces {
 
-using pipeline::FragmentColour;
 using pipeline::Frame;
 using pipeline::LeftOut;
 using pipeline::Pass;

@@ -49,7 +49,7 @@ FragmentStream cover_screen(const Frame& frame, const Pass& pass) {
 
 } // namespace
 
-std::vector<FragmentStream> rasterize_frame(const Frame& frame, FrontEndOptions options) {
+std::vector<FragmentStream> rasterize_frame(const Frame& frame, const FrontEndOptions& options) {
     std::vector<FragmentStream> streams;
     for (const Pass& pass : frame.passes) {
         if (!pass.rasterizes()) continue;

@@ -11,6 +11,6 @@ namespace pipeline {
 /// One stream for each pass that rasterizes, in pass order. What to shade and which faces to keep follows from the
 /// frame; of `options`, threads, stop and progress count. Shaders that read surfaces have not run yet: see
 /// shade_pass.hpp.
-std::vector<FragmentStream> rasterize_frame(const Frame& frame, FrontEndOptions options = {});
+std::vector<FragmentStream> rasterize_frame(const Frame& frame, const FrontEndOptions& options = {});
 
 } // namespace pipeline

@@ -143,7 +143,7 @@ class ForwardLightShader final : public pipeline::Shader {
   public:
     ForwardLightShader(const pipeline::Frame& frame, const Lighting& lighting, const GBufferOptions& options)
         : draws_(deferred_draws(frame)),
-          to_world_(glm::transpose(glm::mat3(frame.view.view))),
+          normals_(frame),
           lighting_(lighting),
           specular_(options.specular, options.specular_power / 255.0F, 0.0F, 0.0F) {}
 
@@ -159,17 +159,16 @@ class ForwardLightShader final : public pipeline::Shader {
         std::array<glm::dvec3, 4> points;
         for (std::size_t i = 0; i < 4; ++i) points[i] = lighting_.place(at.x[i], at.y[i], input.depth[i]);
         const auto arriving = lighting_.through_shadows(points, input.pixels, surfaces, 0);
-        const float side = draw.double_sided && input.front == draw.mirrored ? -0.5F : 0.5F;
+        const auto normals = normals_.codes(input, draw);
         for (std::size_t i = 0; i < 4; ++i) {
-            const glm::vec3 normal = to_world_ * glm::vec3(input.normal[i]) * side + 0.5F;
-            const glm::vec4 light = lighting_.reflected(points[i], normal, specular_, arriving[i]);
+            const glm::vec4 light = lighting_.reflected(points[i], normals[i], specular_, arriving[i]);
             output.colours[0][i] = glm::vec4(glm::vec3(colours[i]) * glm::vec3(light) + light.a, 0.0F);
         }
     }
 
   private:
     std::vector<DeferredDraw> draws_;
-    glm::mat3 to_world_;
+    WorldNormals normals_;
     Lighting lighting_;
     glm::vec4 specular_;
 };

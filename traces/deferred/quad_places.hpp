@@ -5,6 +5,7 @@
 #include "traces/deferred/shaders.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace traces {
@@ -35,5 +36,21 @@ inline pipeline::QuadTexels with_opacity(pipeline::QuadTexels colours, const Def
     for (glm::vec4& colour : colours) colour.a *= draw.opacity;
     return colours;
 }
+
+/// Normals of the surfaces of a frame, in the world, from [-1,1] to [0,1]; back faces of double-sided ones turned over.
+class WorldNormals {
+  public:
+    explicit WorldNormals(const pipeline::Frame& frame) : to_world_(glm::transpose(glm::mat3(frame.view.view))) {}
+
+    std::array<glm::vec3, 4> codes(const pipeline::ShaderInput& input, const DeferredDraw& draw) const {
+        const float side = draw.double_sided && input.front == draw.mirrored ? -0.5F : 0.5F;
+        std::array<glm::vec3, 4> codes;
+        for (std::size_t i = 0; i < 4; ++i) codes[i] = to_world_ * glm::vec3(input.normal[i]) * side + 0.5F;
+        return codes;
+    }
+
+  private:
+    glm::mat3 to_world_;
+};
 
 } // namespace traces

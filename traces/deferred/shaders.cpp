@@ -23,7 +23,7 @@ constexpr float behind_eps = 1e-6F; ///< equal depths of two passes are one surf
 class GBufferShader final : public pipeline::Shader {
   public:
     GBufferShader(const pipeline::Frame& frame, const GBufferOptions& options)
-        : draws_(deferred_draws(frame)), to_world_(glm::transpose(glm::mat3(frame.view.view))), options_(options) {}
+        : draws_(deferred_draws(frame)), normals_(frame), options_(options) {}
 
     ShaderShape shape() const override {
         return {.outputs = 4,
@@ -40,10 +40,9 @@ class GBufferShader final : public pipeline::Shader {
         const unsigned transparent = transparent_pixels(output.colours[0]);
         if (options_.layer == Layer::interlaced) output.alive &= ~(transparent & even_rows);
         if (options_.layer == Layer::behind) keep_behind(input, transparent, surfaces, output);
-        const bool back = draw.double_sided && input.front == draw.mirrored;
+        const auto normals = normals_.codes(input, draw);
         for (std::size_t i = 0; i < 4; ++i) {
-            const glm::vec3 normal = to_world_ * glm::vec3(input.normal[i]) * (back ? -1.0F : 1.0F);
-            output.colours[1][i] = glm::vec4(normal * 0.5F + 0.5F, 0.0F);
+            output.colours[1][i] = glm::vec4(normals[i], 0.0F);
             output.colours[2][i] = {options_.specular, options_.specular_power / 255.0F, 0.0F, 0.0F};
             output.colours[3][i].r = input.depth[i];
         }
@@ -61,7 +60,7 @@ class GBufferShader final : public pipeline::Shader {
     }
 
     std::vector<DeferredDraw> draws_;
-    glm::mat3 to_world_;
+    WorldNormals normals_;
     GBufferOptions options_;
 };
 
@@ -69,10 +68,7 @@ class GBufferShader final : public pipeline::Shader {
 class AmbientShader final : public pipeline::Shader {
   public:
     AmbientShader(const pipeline::Frame& frame, float ambient, bool depths)
-        : draws_(deferred_draws(frame)),
-          to_world_(glm::transpose(glm::mat3(frame.view.view))),
-          ambient_(ambient),
-          depths_(depths) {}
+        : draws_(deferred_draws(frame)), normals_(frame), ambient_(ambient), depths_(depths) {}
 
     ShaderShape shape() const override {
         return {
@@ -84,17 +80,17 @@ class AmbientShader final : public pipeline::Shader {
         const DeferredDraw& draw = draws_[input.draw];
         const QuadTexels colours = with_opacity(input.colour, draw);
         output.alive &= ~(transparent_pixels(colours) & even_rows);
-        const float side = draw.double_sided && input.front == draw.mirrored ? -0.5F : 0.5F;
+        const auto normals = normals_.codes(input, draw);
         for (std::size_t i = 0; i < 4; ++i) {
             output.colours[0][i] = glm::vec4(glm::vec3(colours[i]) * ambient_, colours[i].a);
-            output.colours[1][i] = glm::vec4(to_world_ * glm::vec3(input.normal[i]) * side + 0.5F, 0.0F);
+            output.colours[1][i] = glm::vec4(normals[i], 0.0F);
             output.colours[2][i].r = input.depth[i];
         }
     }
 
   private:
     std::vector<DeferredDraw> draws_;
-    glm::mat3 to_world_;
+    WorldNormals normals_;
     float ambient_;
     bool depths_;
 };

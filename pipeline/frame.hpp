@@ -140,7 +140,7 @@ struct Frame {
     float opacity = 0.5F; ///< uniform alpha of composited layers (A11); scales that of every blended write, too
 
     const View& view_of(const Pass& pass) const { return pass.view == 0 ? view : other_views.at(pass.view - 1); }
-    /// Of the passes that fill the k-buffer, which all have the same; that of the eye where there are none.
+    /// Of the first pass that fills the k-buffer, as large as those of the others; that of the eye where there is none.
     const View& view_of_kbuffer() const {
         const auto pass = std::find_if(passes.begin(), passes.end(), [](const Pass& of) { return of.runs_program(); });
         return pass == passes.end() ? view : view_of(*pass);

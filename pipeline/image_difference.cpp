@@ -13,7 +13,7 @@ class PixelComparison {
     PixelComparison(const ModifyProgram& program, KBufferDifference& result)
         : program_(program),
           entry_(program.floats_per_entry()),
-          sorted_(program.peeling() != Peeling::ranges),
+          sorted_(program.entries_are_sorted()),
           empty_(program.floats_per_pixel()),
           result_(result) {
         program.clear(empty_.data());

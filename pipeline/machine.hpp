@@ -90,6 +90,7 @@ class Machine {
                                 std::uint32_t pixel_bytes);
     void resolve_cleared(ClearBits& bits, std::uint32_t pixel_bytes);
     void resolve_cleared(std::span<const SurfaceId> read); ///< surfaces that a shader is about to read
+    void forget_entries();                                 ///< of the k-buffer, which is cleared
     std::uint32_t kbuffer_bytes() const;                   ///< per pixel: entries, or heads of lists
     void set_costs(const Needs& needs);
     SurfaceLayout layout_of(std::uint32_t width, std::uint32_t height, std::uint32_t samples = 1) const {
@@ -103,8 +104,9 @@ class Machine {
     void collect_pixels(RunResult& result, const ReferenceImage& reference) const;
     void judge_pixels(RunResult& result, const ReferenceImage& reference, std::vector<std::uint8_t> wrong,
                       const std::vector<std::uint8_t>& tied) const;
+    bool faultless(SurfaceId surface) const; ///< each pass that wrote it was right about what it had read
     void explain_peeling(std::vector<std::uint8_t>& facts) const;
-    /// Places where colour or depth differ from the reference: 1.
+    /// Places where colour or depth differ from the reference: 1; by the fault of what their passes read: 2.
     std::vector<std::uint8_t> wrong_fixed_places(const RunResult& result, const ReferenceImage& reference) const;
     bool explained(std::size_t place) const; ///< a hazard happened here
     void collect_hazards(RunResult& result) const;
@@ -123,8 +125,9 @@ class Machine {
     std::unique_ptr<Units> units_;
     std::vector<PassResult> passes_;
     std::vector<PassJudgement> judgements_;
-    std::vector<bool> diverged_; ///< by surface: it is not what the reference of the frame has at this time
-    std::vector<float> layers_;  ///< k-buffer content put together from peeled layers
+    std::vector<bool> diverged_;           ///< by surface: it is not what the reference of the frame has at this time
+    std::vector<float> layers_;            ///< k-buffer content put together from peeled layers
+    std::uint64_t lost_before_clears_ = 0; ///< updates of k-buffers that were cleared since
     bool textures_linked_ = false;
 };
 

@@ -11,6 +11,7 @@ void Machine::clear(const Pass& pass) {
         const SurfaceLayout layout = layout_of(info.width, info.height, info.planes);
         const std::uint64_t texels = std::uint64_t{info.width} * info.height * info.planes;
         units_->surfaces.clear(surface);
+        if (info.program != nullptr) forget_entries();
         drop_written(std::span(&surface, 1));
         if (info.program == nullptr)
             bytes += clear_surface(units_->cleared[surface], layout, texels, bytes_of(info.format));
@@ -22,6 +23,15 @@ void Machine::clear(const Pass& pass) {
     }
     if (bytes != 0) stream_surface(0, bytes);
     end();
+}
+
+void Machine::forget_entries() {
+    if (units_->kbuffer) {
+        lost_before_clears_ += units_->kbuffer->lost_updates();
+        units_->kbuffer->clear();
+    }
+    if (units_->lists) units_->lists->clear();
+    units_->history->forget_stores();
 }
 
 std::uint32_t Machine::kbuffer_bytes() const {

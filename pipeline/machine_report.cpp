@@ -124,6 +124,20 @@ void Machine::list_units(RunResult& result) const {
             result.left_out.emplace_back(item.unit, item.reason);
 }
 
+namespace {
+
+// What a place is wrong by, as bits.
+constexpr std::uint8_t own_fault = 1, of_inputs = 2;
+
+} // namespace
+
+bool Machine::faultless(SurfaceId surface) const {
+    return surface != no_surface &&
+           std::all_of(judgements_.begin(), judgements_.end(), [&](const PassJudgement& judgement) {
+               return judgement.surface != frame_->surfaces[surface].name || judgement.wrong_places == 0;
+           });
+}
+
 void Machine::collect_pixels(RunResult& result, const ReferenceImage& reference) const {
     std::vector<std::uint8_t> wrong, tied;
     if (frame_->needs.kbuffer) {
@@ -141,42 +155,49 @@ void Machine::collect_pixels(RunResult& result, const ReferenceImage& reference)
     for (SurfaceId i = 0; i < surfaces.count(); ++i) result.surfaces.push_back({surfaces.info(i), surfaces.memory(i)});
     const std::vector<std::uint8_t> fixed = wrong_fixed_places(result, reference);
     wrong.resize(frame_->view_of_kbuffer().places());
-    if (frame_->kbuffer_seen_from_elsewhere()) // surfaces of other pixels, which nothing explains
-        result.wrong_pixels = result.wrong_because.unexplained =
-            static_cast<std::uint64_t>(std::count(fixed.begin(), fixed.end(), 1));
-    else
+    if (frame_->kbuffer_seen_from_elsewhere()) { // surfaces of other pixels, which no hazard there explains
+        for (const std::uint8_t fault : fixed) {
+            result.wrong_because.unexplained += (fault & own_fault) != 0 ? 1 : 0;
+            result.wrong_because.inputs += fault == of_inputs ? 1 : 0;
+        }
+        result.wrong_pixels = result.wrong_because.unexplained + result.wrong_because.inputs;
+    } else {
         for (std::size_t place = 0; place < wrong.size(); ++place) wrong[place] |= fixed[place];
+    }
     judge_pixels(result, reference, std::move(wrong), tied);
 }
 
 std::vector<std::uint8_t> Machine::wrong_fixed_places(const RunResult& result, const ReferenceImage& reference) const {
     std::vector<std::uint8_t> wrong(frame_->view.places());
+    const std::uint8_t colour_fault = faultless(frame_->main_colour()) ? of_inputs : own_fault;
+    const std::uint8_t depth_fault = faultless(frame_->main_depth()) ? of_inputs : own_fault;
     if (!result.colour.empty()) {
         CHECK(result.colour.size() == reference.colour.size());
         for (std::size_t at = 0; at < result.colour.size(); ++at)
             if (std::bit_cast<std::uint32_t>(result.colour[at]) != std::bit_cast<std::uint32_t>(reference.colour[at]))
-                wrong[at / 4] = 1;
+                wrong[at / 4] |= colour_fault;
     }
     for (std::size_t place = 0; place < result.depth.size() && place < reference.depth.size(); ++place)
-        if (result.depth[place] != reference.depth[place]) wrong[place] = 1;
+        if (result.depth[place] != reference.depth[place]) wrong[place] |= depth_fault;
     for (std::size_t place = 0; place < result.stencil.size() && place < reference.stencil.size(); ++place)
-        if (result.stencil[place] != reference.stencil[place]) wrong[place] = 1;
+        if (result.stencil[place] != reference.stencil[place]) wrong[place] |= depth_fault;
     return wrong;
 }
 
 namespace {
 
-// Of a place, or of a pixel: what is true of any of its samples.
+// Of a place, or of a pixel: what is true of any of its samples. Wrong for none of these reasons: by its inputs.
 constexpr std::uint8_t is_wrong = 1, more_than_tied = 2, has_overflow = 4, by_hazard = 8, by_tie = 16, by_format = 32,
                        by_eps = 64, unexplained = 128;
 
 void count_reason(WrongBecause& because, std::uint8_t facts) {
-    std::uint64_t& reason = (facts & unexplained) != 0 ? because.unexplained
-                            : (facts & by_hazard) != 0 ? because.hazard
-                            : (facts & by_tie) != 0    ? because.tie
-                            : (facts & by_format) != 0 ? because.depth_format
-                            : (facts & by_eps) != 0    ? because.eps
-                                                       : because.overflow;
+    std::uint64_t& reason = (facts & unexplained) != 0    ? because.unexplained
+                            : (facts & by_hazard) != 0    ? because.hazard
+                            : (facts & by_tie) != 0       ? because.tie
+                            : (facts & by_format) != 0    ? because.depth_format
+                            : (facts & by_eps) != 0       ? because.eps
+                            : (facts & has_overflow) != 0 ? because.overflow
+                                                          : because.inputs;
     ++reason;
 }
 
@@ -214,7 +235,7 @@ void Machine::judge_pixels(RunResult& result, const ReferenceImage& reference, s
             if (!tie) facts |= more_than_tied;
             if (explained(place))
                 facts |= by_hazard;
-            else if (!overflow)
+            else if (!overflow && wrong[place] != of_inputs)
                 facts |= plan_.order_free && tie ? by_tie : unexplained;
         }
         wrong[place] = facts;
@@ -261,7 +282,7 @@ void Machine::collect_hazards(RunResult& result) const {
                      [](const HazardPair& a, const HazardPair& b) { return a.read < b.read; });
     const std::uint64_t total = result.hazards.total();
     result.mean_staleness = total == 0 ? 0.0 : static_cast<double>(staleness) / static_cast<double>(total);
-    result.lost_updates = units.kbuffer ? units.kbuffer->lost_updates() : 0;
+    result.lost_updates = lost_before_clears_ + (units.kbuffer ? units.kbuffer->lost_updates() : 0);
 
     if (total == 0) return;
     const SurfaceLayout& layout = units.pass.layout;

@@ -29,6 +29,7 @@ struct WrongBecause {
     std::uint64_t tie = 0;          ///< fragments of equal depth, of a design free of order
     std::uint64_t depth_format = 0; ///< peeled layers that lie nearer to each other than the depth format can tell
     std::uint64_t eps = 0;          ///< peeled layers within eps of each other, by the eps rule
+    std::uint64_t inputs = 0;       ///< a pass without fault read what one before it had left wrong
 
     static constexpr auto fields() {
         using S = WrongBecause;
@@ -40,7 +41,8 @@ struct WrongBecause {
             sim::field<&S::depth_format>("layers lie nearer to each other than the depth format of the "
                                          "passes can tell apart")
                 .unit("pixels"),
-            sim::field<&S::eps>("layers lie within eps of each other").unit("pixels")};
+            sim::field<&S::eps>("layers lie within eps of each other").unit("pixels"),
+            sim::field<&S::inputs>("a pass read what one before it had left wrong elsewhere").unit("pixels")};
     }
 };
 static_assert(sim::fully_described<WrongBecause>);

@@ -16,7 +16,7 @@ class KBufferLayout {
           entry_floats_(program.floats_per_entry()),
           pixel_floats_(program.floats_per_pixel()),
           depth_slot_(program.depth_slot()),
-          colour_(program.needs_colour() && program.floats_per_entry() >= 4),
+          colour_(program.entries_are_colours()),
           clear_(program.floats_per_pixel()) {
         program.clear(clear_.data());
     }

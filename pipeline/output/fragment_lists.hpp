@@ -23,6 +23,9 @@ class FragmentLists {
     void keep(std::uint32_t block, std::uint32_t pixel, Node node) {
         fragments_[block * std::size_t{4} + pixel].push_back(node);
     }
+    void clear() {
+        for (std::vector<Node>& list : fragments_) list.clear();
+    }
     void lose(std::uint32_t block, std::uint32_t pixel) { overflowed_[block * std::size_t{4} + pixel] = 1; }
 
     const SurfaceLayout& layout() const { return layout_; }

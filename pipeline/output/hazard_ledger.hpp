@@ -42,6 +42,9 @@ class StoreHistory {
         if (latest.number <= number && latest.visible == never) latest.visible = at;
     }
 
+    /// As before the first store; hazards stay on record.
+    void forget_stores() { stores_.assign(stores_.size(), {}); }
+
   private:
     std::vector<Store> stores_;
     std::vector<std::uint8_t> classes_; ///< bit i: hazard class i happened at this pixel

@@ -71,6 +71,10 @@ class ModifyProgram {
     virtual bool needs_colour() const = 0;  ///< reads more of the fragment than its depth
     /// Index of the depth within an entry.
     virtual std::uint32_t depth_slot() const = 0;
+    /// An entry begins with red, green and blue.
+    virtual bool entries_are_colours() const { return needs_colour() && floats_ >= 4; }
+    /// No entry is nearer than the one before it.
+    virtual bool entries_are_sorted() const { return peeling() != Peeling::ranges; }
 
     /// Depth of an entry that holds no fragment; the last entry's, as some programs start from other ones.
     float cleared_depth() const {

@@ -292,7 +292,7 @@ TEST(Deferred, BadInputIsToldInOneLine) {
     EXPECT_EQ(error_of({"lights=65"}), "workload deferred: lights: expected whole number 0 to 64, got 65");
     EXPECT_EQ(error_of({"lights=-1"}), "workload deferred: lights: expected whole number 0 to 64, got -1");
     EXPECT_EQ(error_of({"method=pn"}),
-              R"(workload deferred: method: expected one of pm | dp | fwd | fw, got "pn"; did you mean 'pm'?)");
+              R"(workload deferred: method: expected one of pm | dp | fwd | fw | kg, got "pn"; did you mean 'pm'?)");
     EXPECT_EQ(error_of({}, "gen:stack"),
               "workload deferred: expected a scene with places in a world, those of gen:stack are on the screen");
     EXPECT_EQ(error_of({}, "gen:slabs", 4),

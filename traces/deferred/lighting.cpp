@@ -1,6 +1,7 @@
 #include "traces/deferred/quad_places.hpp"
 #include "traces/deferred/shaders.hpp"
 #include "traces/deferred/shadow_filter.hpp"
+#include "traces/deferred/two_class_surface.hpp"
 
 #include <algorithm>
 #include <array>
@@ -32,7 +33,8 @@ class Lighting {
 
     /// Shadow surfaces that it reads.
     std::uint32_t maps() const {
-        return options_.shadows == Shadows::none ? 0 : options_.shadows == Shadows::opaque ? 1 : 2;
+        if (options_.shadows == Shadows::none) return 0;
+        return options_.shadows == Shadows::opaque || options_.maps == ShadowMaps::two_class ? 1 : 2;
     }
 
     glm::dvec3 place(std::int32_t x, std::int32_t y, float depth) const {
@@ -59,50 +61,85 @@ class Lighting {
     /// What arrives past the shadows, whose surfaces the shader knows from `first_map` on.
     std::array<glm::vec3, 4> through_shadows(const std::array<glm::dvec3, 4>& points, unsigned pixels,
                                              SurfaceAccess& surfaces, std::uint32_t first_map) const {
-        constexpr std::uint32_t slots_opaque = 66, slots_transparent = 82;
-        constexpr std::uint32_t slots_of_projection = 10; // four dots, reciprocal, scale and bias, compare, multiply
         std::array<glm::vec3, 4> light;
         light.fill(glm::vec3(light_.colour));
         if (options_.shadows == Shadows::none) {
             surfaces.issue(slots_opaque - slots_of_projection, pixels);
             return light;
         }
-        LaneIndices x{}, y{}, other{};
+        const MapPlaces at = in_map(points);
+        surfaces.issue(options_.shadows == Shadows::opaque ? slots_opaque : slots_transparent, pixels);
+        if (options_.shadows == Shadows::opaque)
+            filter_opaque(at, pixels, surfaces, first_map, light);
+        else if (options_.maps == ShadowMaps::two_class)
+            filter_classes(at, pixels, surfaces, first_map, light);
+        else
+            filter_rows(at, pixels, surfaces, first_map, light);
+        return light;
+    }
+
+  private:
+    using QuadLight = std::array<glm::vec3, 4>;
+
+    static constexpr std::uint32_t slots_opaque = 66, slots_transparent = 82;
+    static constexpr std::uint32_t slots_of_projection = 10; // four dots, reciprocal, scale, bias, compare, multiply
+
+    /// Points as a shadow map sees them.
+    struct MapPlaces {
+        LaneIndices x{}, y{}; ///< texels, outside of the map as well
         std::array<float, 4> depth{};
+        unsigned inside = 0; ///< mask of those in the map
+    };
+
+    MapPlaces in_map(const std::array<glm::dvec3, 4>& points) const {
+        MapPlaces at;
         for (std::size_t i = 0; i < 4; ++i) {
             const glm::dvec3 nearer =
                 points[i] + glm::normalize(light_.place - points[i]) * (options_.bias * light_.range);
             const glm::dvec4 seen = to_map_ * glm::dvec4(nearer, 1.0);
             const glm::dvec3 ndc = seen.w > 0.0 ? glm::dvec3(seen) / seen.w : glm::dvec3(2.0);
             const auto size = static_cast<double>(options_.map_size);
-            const auto texel = [size](double at) {
-                return static_cast<std::int32_t>(std::floor(std::clamp(at, -1.0, 2.0) * size));
+            const auto texel = [size](double share) {
+                return static_cast<std::int32_t>(std::floor(std::clamp(share, -1.0, 2.0) * size));
             };
-            x[i] = texel(0.5 + 0.5 * ndc.x);
-            y[i] = texel(0.5 - 0.5 * ndc.y);
-            // One row is even and one is odd, at the last row, too.
-            other[i] = y[i] + 1 < static_cast<std::int32_t>(options_.map_size) ? y[i] + 1 : y[i] - 1;
-            depth[i] = static_cast<float>(0.5 + 0.5 * ndc.z);
+            at.x[i] = texel(0.5 + 0.5 * ndc.x);
+            at.y[i] = texel(0.5 - 0.5 * ndc.y);
+            at.depth[i] = static_cast<float>(0.5 + 0.5 * ndc.z);
+            at.inside |= (inside(at.x[i], at.y[i]) ? 1U : 0U) << i;
         }
-        const QuadTexels here = surfaces.fetch(first_map, x, y, pixels);
-        if (options_.shadows == Shadows::opaque) {
-            surfaces.issue(slots_opaque, pixels);
-            for (std::size_t i = 0; i < 4; ++i)
-                if (inside(x[i], y[i]) && here[i].r < depth[i]) light[i] = glm::vec3(0.0F);
-            return light;
-        }
-        const QuadTexels there = surfaces.fetch(first_map, x, other, pixels);
-        const QuadTexels colour_here = surfaces.fetch(first_map + 1, x, y, pixels);
-        const QuadTexels colour_there = surfaces.fetch(first_map + 1, x, other, pixels);
-        surfaces.issue(slots_transparent, pixels);
-        for (std::size_t i = 0; i < 4; ++i)
-            if (inside(x[i], y[i]))
-                light[i] =
-                    light_through({here[i].r, colour_here[i]}, {there[i].r, colour_there[i]}, depth[i], light[i]);
-        return light;
+        return at;
     }
 
-  private:
+    static void filter_opaque(const MapPlaces& at, unsigned pixels, SurfaceAccess& surfaces, std::uint32_t map,
+                              QuadLight& light) {
+        const QuadTexels depths = surfaces.fetch(map, at.x, at.y, pixels);
+        for (std::size_t i = 0; i < 4; ++i)
+            if ((at.inside >> i & 1U) != 0 && depths[i].r < at.depth[i]) light[i] = glm::vec3(0.0F);
+    }
+
+    void filter_rows(const MapPlaces& at, unsigned pixels, SurfaceAccess& surfaces, std::uint32_t map,
+                     QuadLight& light) const {
+        LaneIndices other{};
+        for (std::size_t i = 0; i < 4; ++i) // one row is even and one is odd, at the last row, too
+            other[i] = at.y[i] + 1 < static_cast<std::int32_t>(options_.map_size) ? at.y[i] + 1 : at.y[i] - 1;
+        const QuadTexels here = surfaces.fetch(map, at.x, at.y, pixels);
+        const QuadTexels there = surfaces.fetch(map, at.x, other, pixels);
+        const QuadTexels colour_here = surfaces.fetch(map + 1, at.x, at.y, pixels);
+        const QuadTexels colour_there = surfaces.fetch(map + 1, at.x, other, pixels);
+        for (std::size_t i = 0; i < 4; ++i)
+            if ((at.inside >> i & 1U) != 0)
+                light[i] =
+                    light_through({here[i].r, colour_here[i]}, {there[i].r, colour_there[i]}, at.depth[i], light[i]);
+    }
+
+    static void filter_classes(const MapPlaces& at, unsigned pixels, SurfaceAccess& surfaces, std::uint32_t map,
+                               QuadLight& light) {
+        const TwoClassQuad seen = read_two_class(surfaces, map, at.x, at.y, pixels & at.inside);
+        for (std::size_t i = 0; i < 4; ++i)
+            light[i] = light_through({seen.transparent[i].depth, seen.transparent[i].colour},
+                                     {seen.opaque[i].depth, seen.opaque[i].colour}, at.depth[i], light[i]);
+    }
+
     bool inside(std::int32_t x, std::int32_t y) const {
         const auto size = static_cast<std::int32_t>(options_.map_size);
         return x >= 0 && x < size && y >= 0 && y < size;
@@ -135,6 +172,35 @@ class LightShader final : public pipeline::Shader {
     }
 
   private:
+    Lighting lighting_;
+};
+
+/// Both surfaces of a pixel at once: those of a k-buffer.
+class TwoClassLight final : public pipeline::Shader {
+  public:
+    explicit TwoClassLight(const Lighting& lighting) : lighting_(lighting) {}
+
+    ShaderShape shape() const override { return {.outputs = 2, .reads = 1 + lighting_.maps(), .registers = 10}; }
+
+    void shade(const ShaderInput& input, SurfaceAccess& surfaces, ShaderOutput& output) const override {
+        const Places at(input);
+        const TwoClassQuad seen = read_two_class(surfaces, 0, at.x, at.y, input.pixels);
+        output.colours[0] = light_on(seen.transparent, at, input.pixels, surfaces);
+        output.colours[1] = light_on(seen.opaque, at, input.pixels, surfaces);
+    }
+
+  private:
+    QuadTexels light_on(const QuadSurfaces& quad, const Places& at, unsigned pixels, SurfaceAccess& surfaces) const {
+        std::array<glm::dvec3, 4> points;
+        for (std::size_t i = 0; i < 4; ++i) points[i] = lighting_.place(at.x[i], at.y[i], quad[i].depth);
+        const auto arriving = lighting_.through_shadows(points, pixels, surfaces, 1);
+        QuadTexels light{};
+        for (std::size_t i = 0; i < 4; ++i)
+            if (quad[i].depth < 1.0F)
+                light[i] = lighting_.reflected(points[i], glm::vec3(quad[i].normal), quad[i].specular, arriving[i]);
+        return light;
+    }
+
     Lighting lighting_;
 };
 
@@ -184,6 +250,11 @@ std::shared_ptr<const pipeline::Shader> forward_light_shader(const pipeline::Fra
                                                              const LightOptions& options,
                                                              const GBufferOptions& surfaces) {
     return std::make_shared<const ForwardLightShader>(frame, Lighting(frame.view, light, options), surfaces);
+}
+
+std::shared_ptr<const pipeline::Shader> two_class_light_shader(const pipeline::View& eye, const SpotLight& light,
+                                                               const LightOptions& options) {
+    return std::make_shared<const TwoClassLight>(Lighting(eye, light, options));
 }
 
 } // namespace traces

@@ -1,6 +1,6 @@
 #include "traces/deferred/shaders.hpp"
 
-#include "traces/deferred/quad_places.hpp"
+#include "traces/deferred/composition.hpp"
 #include "traces/deferred/shadow_filter.hpp"
 
 #include <algorithm>
@@ -118,41 +118,6 @@ class ShadowShader final : public pipeline::Shader {
     Shadows shadows_;
 };
 
-/// What compositions share: a surface in the light that it got, and where one looks through it.
-class Composition : public pipeline::Shader {
-  public:
-    Composition(const pipeline::View& eye, const CompositionOptions& options)
-        : options_(options),
-          to_eye_(eye.view),
-          width_(static_cast<std::int32_t>(eye.width)),
-          height_(static_cast<std::int32_t>(eye.height)) {}
-
-  protected:
-    /// Specular light is white.
-    static glm::vec3 lit(const glm::vec4& colour, const glm::vec4& light) {
-        return glm::vec3(colour) * glm::vec3(light) + light.a;
-    }
-    /// Where one sees through a pane with these normals, on the screen.
-    Places refracted(const Places& at, const QuadTexels& normals) const {
-        Places through = at;
-        const auto pixels = static_cast<float>(options_.coefficient * height_);
-        for (std::size_t i = 0; i < 4; ++i) {
-            const glm::vec3 normal = to_eye_ * (glm::vec3(normals[i]) * 2.0F - 1.0F);
-            const auto along = [pixels](float part) { return static_cast<std::int32_t>(std::lround(pixels * part)); };
-            through.x[i] = std::clamp(at.x[i] + along(normal.x), 0, width_ - 1);
-            through.y[i] = std::clamp(at.y[i] - along(normal.y), 0, height_ - 1);
-        }
-        return through;
-    }
-    bool refracts() const { return options_.refraction; }
-    static constexpr std::uint32_t slots_plain = 14, slots_refracting = 27;
-
-  private:
-    CompositionOptions options_;
-    glm::mat3 to_eye_;
-    std::int32_t width_, height_;
-};
-
 class InterlacedComposition final : public Composition {
   public:
     InterlacedComposition(const pipeline::View& eye, const CompositionOptions& options, Interlaced what)
@@ -164,7 +129,7 @@ class InterlacedComposition final : public Composition {
     }
 
     void shade(const ShaderInput& input, SurfaceAccess& surfaces, ShaderOutput& output) const override {
-        surfaces.issue(refracts() ? slots_refracting : slots_plain, input.pixels);
+        surfaces.issue(slots(), input.pixels);
         const Places own(input), above = one_above(own);
         const QuadTexels here = surfaces.fetch(0, own.x, own.y, input.pixels);
         const QuadTexels there = surfaces.fetch(0, above.x, above.y, input.pixels);
@@ -240,7 +205,7 @@ class PeeledComposition final : public Composition {
     ShaderShape shape() const override { return {.reads = 7, .registers = 6}; }
 
     void shade(const ShaderInput& input, SurfaceAccess& surfaces, ShaderOutput& output) const override {
-        surfaces.issue(refracts() ? slots_refracting : slots_plain, input.pixels);
+        surfaces.issue(slots(), input.pixels);
         const Places own(input);
         const QuadTexels front = surfaces.fetch(0, own.x, own.y, input.pixels);
         const QuadTexels front_light = surfaces.fetch(1, own.x, own.y, input.pixels);

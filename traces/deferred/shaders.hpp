@@ -43,20 +43,28 @@ std::shared_ptr<const pipeline::Shader> ambient_shader(const pipeline::Frame& fr
 
 enum class Shadows : std::uint8_t { none, opaque, transparent };
 
+/// What a shadow map of transparent shadows is.
+enum class ShadowMaps : std::uint8_t {
+    rows,     ///< rows take turns, as those of the G-buffer
+    two_class ///< a k-buffer
+};
+
 /// Outputs: window depth and, with transparent shadows, colour and opacity; then even rows keep opaque fragments alone.
 std::shared_ptr<const pipeline::Shader> shadow_shader(const pipeline::Frame& frame, Shadows shadows);
 
 struct LightOptions {
     Shadows shadows = Shadows::transparent;
+    ShadowMaps maps = ShadowMaps::rows;
     std::uint32_t map_size = 1024;
     double bias = 1e-3; ///< over the range of the light: receivers come that much nearer to it
     double intensity = 1.0;
 };
-/// Reads normals, specular, depth and the shadow map's targets; output: diffuse light, and specular in alpha.
+/// Reads normals, specular, depth and the shadow map; output: diffuse light, and specular in alpha. A shadow map is
+/// depths, with transparent shadows then colours; or one k-buffer.
 std::shared_ptr<const pipeline::Shader> light_shader(const pipeline::View& eye, const SpotLight& light,
                                                      const LightOptions& options);
 
-/// The same on the surfaces that are drawn, in their colour and for additive blending. Reads the shadow map's targets.
+/// The same on the surfaces that are drawn, in their colour and for additive blending. Reads the shadow map.
 std::shared_ptr<const pipeline::Shader> forward_light_shader(const pipeline::Frame& frame, const SpotLight& light,
                                                              const LightOptions& options,
                                                              const GBufferOptions& surfaces);
@@ -80,7 +88,26 @@ std::shared_ptr<const pipeline::Shader> interlaced_composition(const pipeline::V
 std::shared_ptr<const pipeline::Shader> peeled_composition(const pipeline::View& eye,
                                                            const CompositionOptions& options);
 
+// Where a k-buffer of program two-class is the G-buffer, or a shadow map; entries as TwoClassSurface packs them.
+
+/// Output: the words of an entry.
+std::shared_ptr<const pipeline::Shader> two_class_gbuffer_shader(const pipeline::Frame& frame,
+                                                                 const GBufferOptions& options);
+/// Output: the words of an entry, with colour and opacity alone.
+std::shared_ptr<const pipeline::Shader> two_class_shadow_shader(const pipeline::Frame& frame);
+/// Reads the k-buffer and the shadow map; outputs: light on transparent surfaces, and on opaque ones.
+std::shared_ptr<const pipeline::Shader> two_class_light_shader(const pipeline::View& eye, const SpotLight& light,
+                                                               const LightOptions& options);
+/// Reads the k-buffer, light on transparent surfaces and on opaque ones.
+std::shared_ptr<const pipeline::Shader> two_class_composition(const pipeline::View& eye,
+                                                              const CompositionOptions& options);
+
 } // namespace traces
+
+template <>
+struct sim::EnumNames<traces::ShadowMaps> {
+    static constexpr std::array<std::string_view, 2> names{"rows", "two-class"};
+};
 
 template <>
 struct sim::EnumNames<traces::Shadows> {

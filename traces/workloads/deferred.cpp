@@ -4,7 +4,10 @@
 // holds a pane and what lies behind it at half the rows; shadow maps do the same; a pass over the screen takes the rows
 // apart. Method dp: a second G-buffer is peeled behind the first, both at full resolution, both lit.
 // Methods fwd and fw: forward rendering, the geometry once more for each light, rows as in pm; with and without depths.
-// Source: Aladağlı 2015 (specification 003, sections 1.1 to 1.6).
+// Method kg: the G-buffer is a k-buffer, which keeps of each pixel what dp peels, in one geometry pass. Shadow maps can
+// be k-buffers, too.
+// Source: Aladağlı 2015 (specification 003, sections 1.1 to 1.6; 5 for kg).
+#include "models/programs/two_class.hpp"
 #include "pipeline/functional/eye_depth.hpp"
 #include "sim/check.hpp"
 #include "traces/deferred/shaders.hpp"
@@ -18,13 +21,13 @@
 
 namespace traces {
 
-enum class DeferredMethod : std::uint8_t { pm, dp, fwd, fw };
+enum class DeferredMethod : std::uint8_t { pm, dp, fwd, fw, kg };
 
 } // namespace traces
 
 template <>
 struct sim::EnumNames<traces::DeferredMethod> {
-    static constexpr std::array<std::string_view, 4> names{"pm", "dp", "fwd", "fw"};
+    static constexpr std::array<std::string_view, 5> names{"pm", "dp", "fwd", "fw", "kg"};
 };
 
 namespace traces {
@@ -37,6 +40,7 @@ struct DeferredParams {
     DeferredMethod method = DeferredMethod::pm;
     std::uint32_t lights = 4;
     Shadows shadows = Shadows::transparent;
+    ShadowMaps shadow_maps = ShadowMaps::rows;
     bool refraction = true;
     double refraction_coefficient = 0.03;
     std::uint32_t map_size = 1024;
@@ -52,11 +56,13 @@ struct DeferredParams {
         return std::tuple(
             sim::field<&P::method>(
                 "pm: one G-buffer, whose rows take turns; dp: two, of which the second is peeled; fwd, fw: "
-                "forward rendering with and without stored depths"),
+                "forward rendering with and without stored depths; kg: a k-buffer as G-buffer"),
             sim::field<&P::lights>("spot lights: those of the scene first, then some around it")
                 .unit("lights")
                 .range(0, 64),
             sim::field<&P::shadows>("none, opaque (of all surfaces), transparent (panes let their colour pass)"),
+            sim::field<&P::shadow_maps>("with transparent shadows: rows: rows take turns, opaque surfaces and all; "
+                                        "two-class: a k-buffer, with methods that have none"),
             sim::field<&P::refraction>("panes show what lies aside of what is behind them"),
             sim::field<&P::refraction_coefficient>("offset of a normal across the view, over the picture's height")
                 .range(0.0, 1.0),
@@ -115,11 +121,22 @@ class DeferredGraph {
   private:
     bool forward() const { return params_.method == DeferredMethod::fw || params_.method == DeferredMethod::fwd; }
     bool stores_depths() const { return params_.method == DeferredMethod::fwd; }
+    bool keeps_classes() const { return params_.method == DeferredMethod::kg; }
+    bool shadow_kbuffer() const {
+        return params_.shadows == Shadows::transparent && params_.shadow_maps == ShadowMaps::two_class;
+    }
+    LightOptions light_options() const {
+        return {params_.shadows, params_.shadow_maps, params_.map_size, params_.bias, params_.intensity};
+    }
+    /// Both surfaces of a pixel are lit.
+    bool lights_both() const { return peels() || keeps_classes(); }
     bool peels() const { return params_.method == DeferredMethod::dp; }
 
     void build() {
         if (forward())
             add_ambient();
+        else if (keeps_classes())
+            add_two_class_gbuffer();
         else
             add_gbuffer(nearest_, peels() ? Layer::nearest : Layer::interlaced, "G-buffer");
         if (peels()) add_gbuffer(behind_, Layer::behind, "G-buffer behind");
@@ -131,7 +148,7 @@ class DeferredGraph {
         graph_->add_surface(behind_.light, pipeline::SurfaceFormat::rgba8, ambient);
         if (!forward())
             graph_->add_clear("clear light",
-                              peels() ? std::vector{nearest_.light, behind_.light} : std::vector{nearest_.light});
+                              lights_both() ? std::vector{nearest_.light, behind_.light} : std::vector{nearest_.light});
         for (std::size_t i = 0; i < lights_.size(); ++i) {
             if (params_.shadows != Shadows::none) add_shadow_map(i);
             forward() ? add_forward_light(i) : add_light(i, nearest_, fmt::format("light {}", i));
@@ -160,6 +177,16 @@ class DeferredGraph {
         graph_->add_shaded(std::move(pass));
     }
 
+    void add_two_class_gbuffer() {
+        graph_->add_clear("clear G-buffer", {kbuffer_surface});
+        ShadedPass pass;
+        pass.name = "G-buffer";
+        pass.shader = two_class_gbuffer_shader(frame_, {Layer::nearest, params_.specular, params_.specular_power});
+        pass.draws = all_;
+        pass.kbuffer = kbuffer_surface;
+        graph_->add_shaded(std::move(pass));
+    }
+
     void add_ambient() {
         graph_->add_surface(nearest_.colours, pipeline::SurfaceFormat::rgba8, glm::vec4(0, 0, 0, 1));
         graph_->add_surface(nearest_.normals, pipeline::SurfaceFormat::rgb10a2, glm::vec4(0.5F, 0.5F, 0.5F, 0.0F));
@@ -183,8 +210,7 @@ class DeferredGraph {
     void add_forward_light(std::size_t light) {
         ShadedPass pass;
         pass.name = fmt::format("light {}", light);
-        pass.shader = forward_light_shader(frame_, lights_[light],
-                                           {params_.shadows, params_.map_size, params_.bias, params_.intensity},
+        pass.shader = forward_light_shader(frame_, lights_[light], light_options(),
                                            {Layer::interlaced, params_.specular, params_.specular_power});
         pass.reads = shadow_maps();
         pass.targets = {nearest_.colours};
@@ -199,6 +225,7 @@ class DeferredGraph {
     }
 
     std::vector<std::string> shadow_maps() const {
+        if (shadow_kbuffer()) return {kbuffer_surface};
         std::vector<std::string> maps;
         if (params_.shadows != Shadows::none) maps.emplace_back("shadow depths");
         if (params_.shadows == Shadows::transparent) maps.emplace_back("shadow colours");
@@ -207,17 +234,22 @@ class DeferredGraph {
 
     // One map serves all lights, one after the other.
     void add_shadow_map(std::size_t light) {
-        std::vector<std::string> targets = shadow_maps(), cleared = targets;
-        cleared.emplace_back("shadow z");
+        std::vector<std::string> cleared = shadow_maps();
+        if (!shadow_kbuffer()) cleared.emplace_back("shadow z");
         graph_->add_clear(fmt::format("clear shadow {}", light), std::move(cleared));
         ShadedPass pass;
         pass.name = fmt::format("shadow {}", light);
-        pass.shader = shadow_shader(frame_, params_.shadows);
-        pass.targets = std::move(targets);
         pass.draws = all_;
-        pass.depth = "shadow z";
-        pass.states[0].depth.test = pass.states[0].depth.write = true;
         pass.states[0].depth.bias_slope = params_.slope_bias;
+        if (shadow_kbuffer()) {
+            pass.shader = two_class_shadow_shader(frame_);
+            pass.kbuffer = kbuffer_surface;
+        } else {
+            pass.shader = shadow_shader(frame_, params_.shadows);
+            pass.targets = shadow_maps();
+            pass.depth = "shadow z";
+            pass.states[0].depth.test = pass.states[0].depth.write = true;
+        }
         pass.view = lights_[light].view(params_.map_size);
         graph_->add_shaded(std::move(pass));
     }
@@ -226,14 +258,19 @@ class DeferredGraph {
     void add_light(std::size_t light, const GBuffer& lit, std::string name) {
         ShadedPass pass;
         pass.name = std::move(name);
-        pass.shader =
-            light_shader(eye_, lights_[light], {params_.shadows, params_.map_size, params_.bias, params_.intensity});
-        pass.reads = {lit.normals, lit.specular, lit.depths};
+        if (keeps_classes()) {
+            pass.shader = two_class_light_shader(eye_, lights_[light], light_options());
+            pass.reads = {kbuffer_surface};
+            pass.targets = {nearest_.light, behind_.light};
+        } else {
+            pass.shader = light_shader(eye_, lights_[light], light_options());
+            pass.reads = {lit.normals, lit.specular, lit.depths};
+            pass.targets = {lit.light};
+        }
         for (std::string& map : shadow_maps()) pass.reads.push_back(std::move(map));
-        pass.targets = {lit.light};
         pass.draws = {volumes_[light]};
         pipeline::RasterState& state = pass.states[0];
-        state.blend[0] = pipeline::blends::of(pipeline::blends::sum);
+        state.blend.fill(pipeline::blends::of(pipeline::blends::sum));
         state.depth.clamp = true;
         state.culling = eye_touches(lights_[light]) ? pipeline::FaceCulling::front : pipeline::FaceCulling::back;
         graph_->add_shaded(std::move(pass));
@@ -253,7 +290,10 @@ class DeferredGraph {
         pass.targets = {"picture"};
         const CompositionOptions options{params_.refraction, params_.refraction_coefficient};
         pass.reads = {nearest_.colours, nearest_.light};
-        if (peels()) {
+        if (keeps_classes()) {
+            pass.shader = two_class_composition(eye_, options);
+            pass.reads = {kbuffer_surface, nearest_.light, behind_.light};
+        } else if (peels()) {
             pass.shader = peeled_composition(eye_, options);
             pass.reads = {nearest_.colours, nearest_.light, nearest_.normals, nearest_.depths,
                           behind_.colours,  behind_.light,  behind_.depths};
@@ -283,6 +323,13 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const Defe
     check(scene, view);
     pipeline::Frame frame = frame_of(scene, view);
     frame.background = glm::vec4(0, 0, 0, 1);
+    const bool shadow_kbuffer =
+        params.shadows == Shadows::transparent && params.shadow_maps == ShadowMaps::two_class && params.lights != 0;
+    if (shadow_kbuffer && params.method == DeferredMethod::kg)
+        throw sim::InputError(fmt::format("{}: shadow_maps: expected rows with method kg, whose G-buffer is the "
+                                          "frame's k-buffer, got two-class",
+                                          workload_deferred));
+    if (shadow_kbuffer || params.method == DeferredMethod::kg) frame.program = models::make_two_class();
     const bool smooth = std::all_of(frame.draws.begin(), frame.draws.end(), [&](const pipeline::Draw& draw) {
         return frame.resources->geometries[draw.geometry].find(pipeline::Semantic::normal) != nullptr;
     });
@@ -295,7 +342,7 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const Defe
 Workload deferred_workload() {
     Workload workload = make_workload<DeferredParams>(
         "deferred", "deferred shading of one transparent layer, with coloured shadows and refraction", build);
-    workload.quality = {{"method", {"pm", "dp", "fwd", "fw"}},
+    workload.quality = {{"method", {"pm", "dp", "fwd", "fw", "kg"}},
                         {"map_size", {"256", "512", "1024", "2048"}},
                         {"shadows", {"none", "opaque", "transparent"}},
                         {"refraction", {"false", "true"}}};

@@ -42,6 +42,18 @@ struct ShaderInput {
     QuadTexels normal{};        ///< eye space, of unit length or 0; w is 0
 };
 
+/// Where the pixels of a quad are, those outside of the mask, too.
+struct QuadPlaces {
+    LaneIndices x{}, y{};
+
+    explicit QuadPlaces(const ShaderInput& input) {
+        for (std::size_t i = 0; i < 4; ++i) {
+            x[i] = static_cast<std::int32_t>(input.x + i % 2);
+            y[i] = static_cast<std::int32_t>(input.y + i / 2);
+        }
+    }
+};
+
 struct ShaderOutput {
     std::array<QuadTexels, most_targets_of_pass> colours{};
     unsigned alive = 0; ///< the pixels that were not discarded

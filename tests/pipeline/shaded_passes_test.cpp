@@ -58,13 +58,9 @@ class CountShader final : public pipeline::Shader {
     pipeline::ShaderShape shape() const override { return {.reads = 1}; }
     void shade(const pipeline::ShaderInput& input, pipeline::SurfaceAccess& surfaces,
                pipeline::ShaderOutput& output) const override {
-        pipeline::LaneIndices x{}, y{};
-        for (std::size_t i = 0; i < 4; ++i) {
-            x[i] = static_cast<std::int32_t>(input.x + i % 2);
-            y[i] = static_cast<std::int32_t>(input.y + i / 2);
-        }
+        const pipeline::QuadPlaces at(input);
         const std::uint32_t targets = surfaces.info(0).program->targets();
-        const auto pixels = surfaces.pixels(0, x, y, input.pixels, 0, targets);
+        const auto pixels = surfaces.pixels(0, at.x, at.y, input.pixels, 0, targets);
         surfaces.issue(k_, input.pixels);
         for (std::size_t i = 0; i < 4; ++i) {
             if (pixels[i] == nullptr) continue;

@@ -28,13 +28,9 @@ class LightingShader final : public pipeline::Shader {
     pipeline::ShaderShape shape() const override { return {.reads = 2}; }
     void shade(const pipeline::ShaderInput& input, pipeline::SurfaceAccess& surfaces,
                pipeline::ShaderOutput& output) const override {
-        pipeline::LaneIndices x{}, y{};
-        for (std::size_t i = 0; i < 4; ++i) {
-            x[i] = static_cast<std::int32_t>(input.x + i % 2);
-            y[i] = static_cast<std::int32_t>(input.y + i / 2);
-        }
-        const pipeline::QuadTexels colours = surfaces.fetch(0, x, y, input.pixels);
-        const pipeline::QuadTexels normals = surfaces.fetch(1, x, y, input.pixels);
+        const pipeline::QuadPlaces at(input);
+        const pipeline::QuadTexels colours = surfaces.fetch(0, at.x, at.y, input.pixels);
+        const pipeline::QuadTexels normals = surfaces.fetch(1, at.x, at.y, input.pixels);
         surfaces.issue(5, input.pixels);
         for (std::size_t i = 0; i < 4; ++i)
             output.colours[0][i] = glm::vec4(glm::vec3(colours[i]) * (normals[i].z * 2.0F - 1.0F), 1.0F);

@@ -2,7 +2,7 @@
 // Source: Aladağlı 2015, section 3.3 (specification 003, B8).
 #pragma once
 
-#include "traces/deferred/quad_places.hpp"
+#include "traces/deferred/world_normals.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -23,8 +23,8 @@ class Composition : public pipeline::Shader {
         return glm::vec3(colour) * glm::vec3(light) + light.a;
     }
     /// Where one sees through a pane with these normals, on the screen.
-    Places refracted(const Places& at, const pipeline::QuadTexels& normals) const {
-        Places through = at;
+    pipeline::QuadPlaces refracted(const pipeline::QuadPlaces& at, const pipeline::QuadTexels& normals) const {
+        pipeline::QuadPlaces through = at;
         const auto pixels = static_cast<float>(options_.coefficient * height_);
         for (std::size_t i = 0; i < 4; ++i) {
             const glm::vec3 normal = to_eye_ * (glm::vec3(normals[i]) * 2.0F - 1.0F);

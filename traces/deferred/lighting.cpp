@@ -1,7 +1,7 @@
-#include "traces/deferred/quad_places.hpp"
 #include "traces/deferred/shaders.hpp"
 #include "traces/deferred/shadow_filter.hpp"
 #include "traces/deferred/two_class_surface.hpp"
+#include "traces/deferred/world_normals.hpp"
 
 #include <algorithm>
 #include <array>
@@ -12,6 +12,7 @@ namespace traces {
 namespace {
 
 using pipeline::LaneIndices;
+using pipeline::QuadPlaces;
 using pipeline::QuadTexels;
 using pipeline::ShaderInput;
 using pipeline::ShaderOutput;
@@ -159,7 +160,7 @@ class LightShader final : public pipeline::Shader {
     ShaderShape shape() const override { return {.reads = 3 + lighting_.maps(), .registers = 8}; }
 
     void shade(const ShaderInput& input, SurfaceAccess& surfaces, ShaderOutput& output) const override {
-        const Places at(input);
+        const QuadPlaces at(input);
         const QuadTexels normals = surfaces.fetch(0, at.x, at.y, input.pixels);
         const QuadTexels specular = surfaces.fetch(1, at.x, at.y, input.pixels);
         const QuadTexels depths = surfaces.fetch(2, at.x, at.y, input.pixels);
@@ -183,14 +184,15 @@ class TwoClassLight final : public pipeline::Shader {
     ShaderShape shape() const override { return {.outputs = 2, .reads = 1 + lighting_.maps(), .registers = 10}; }
 
     void shade(const ShaderInput& input, SurfaceAccess& surfaces, ShaderOutput& output) const override {
-        const Places at(input);
+        const QuadPlaces at(input);
         const TwoClassQuad seen = read_two_class(surfaces, 0, at.x, at.y, input.pixels);
         output.colours[0] = light_on(seen.transparent, at, input.pixels, surfaces);
         output.colours[1] = light_on(seen.opaque, at, input.pixels, surfaces);
     }
 
   private:
-    QuadTexels light_on(const QuadSurfaces& quad, const Places& at, unsigned pixels, SurfaceAccess& surfaces) const {
+    QuadTexels light_on(const QuadSurfaces& quad, const QuadPlaces& at, unsigned pixels,
+                        SurfaceAccess& surfaces) const {
         std::array<glm::dvec3, 4> points;
         for (std::size_t i = 0; i < 4; ++i) points[i] = lighting_.place(at.x[i], at.y[i], quad[i].depth);
         const auto arriving = lighting_.through_shadows(points, pixels, surfaces, 1);
@@ -221,7 +223,7 @@ class ForwardLightShader final : public pipeline::Shader {
         const DeferredDraw& draw = draws_[input.draw];
         const QuadTexels colours = with_opacity(input.colour, draw);
         output.alive &= ~(transparent_pixels(colours) & even_rows);
-        const Places at(input);
+        const QuadPlaces at(input);
         std::array<glm::dvec3, 4> points;
         for (std::size_t i = 0; i < 4; ++i) points[i] = lighting_.place(at.x[i], at.y[i], input.depth[i]);
         const auto arriving = lighting_.through_shadows(points, input.pixels, surfaces, 0);

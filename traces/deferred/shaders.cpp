@@ -12,6 +12,7 @@ namespace traces {
 namespace {
 
 using pipeline::LaneIndices;
+using pipeline::QuadPlaces;
 using pipeline::QuadTexels;
 using pipeline::ShaderInput;
 using pipeline::ShaderOutput;
@@ -51,7 +52,7 @@ class GBufferShader final : public pipeline::Shader {
   private:
     static void keep_behind(const ShaderInput& input, unsigned transparent, SurfaceAccess& surfaces,
                             ShaderOutput& output) {
-        const Places at(input);
+        const QuadPlaces at(input);
         const QuadTexels nearest = surfaces.fetch(0, at.x, at.y, input.pixels);
         surfaces.issue(2, input.pixels); // add and compare
         output.alive &= ~transparent;
@@ -130,10 +131,10 @@ class InterlacedComposition final : public Composition {
 
     void shade(const ShaderInput& input, SurfaceAccess& surfaces, ShaderOutput& output) const override {
         surfaces.issue(slots(), input.pixels);
-        const Places own(input), above = one_above(own);
+        const QuadPlaces own(input), above = one_above(own);
         const QuadTexels here = surfaces.fetch(0, own.x, own.y, input.pixels);
         const QuadTexels there = surfaces.fetch(0, above.x, above.y, input.pixels);
-        Places front = own, behind = own;
+        QuadPlaces front = own, behind = own;
         for (std::size_t i = 0; i < 4; ++i) {
             (there[i].a < here[i].a ? front : behind).y[i] = above.y[i];
             if (here[i].a == there[i].a) front.y[i] = behind.y[i] = own.y[i];
@@ -158,19 +159,19 @@ class InterlacedComposition final : public Composition {
     }
 
   private:
-    static Places one_above(Places places) {
+    static QuadPlaces one_above(QuadPlaces places) {
         for (std::int32_t& y : places.y) y = std::max(y - 1, 0);
         return places;
     }
 
     /// Another opaque surface than the one right behind, unless that lies in front of the pane; without depths, unless
     /// no pane is there (B9).
-    void look_through(unsigned pixels, const Places& front, Places& behind, QuadTexels& behind_colour,
+    void look_through(unsigned pixels, const QuadPlaces& front, QuadPlaces& behind, QuadTexels& behind_colour,
                       SurfaceAccess& surfaces) const {
         const QuadTexels normals = surfaces.fetch(normals_, front.x, front.y, pixels);
-        Places through = refracted(front, normals);
+        QuadPlaces through = refracted(front, normals);
         const QuadTexels first = surfaces.fetch(0, through.x, through.y, pixels);
-        const Places above = one_above(through);
+        const QuadPlaces above = one_above(through);
         const QuadTexels second = surfaces.fetch(0, above.x, above.y, pixels);
         QuadTexels seen = first;
         for (std::size_t i = 0; i < 4; ++i)
@@ -206,7 +207,7 @@ class PeeledComposition final : public Composition {
 
     void shade(const ShaderInput& input, SurfaceAccess& surfaces, ShaderOutput& output) const override {
         surfaces.issue(slots(), input.pixels);
-        const Places own(input);
+        const QuadPlaces own(input);
         const QuadTexels front = surfaces.fetch(0, own.x, own.y, input.pixels);
         const QuadTexels front_light = surfaces.fetch(1, own.x, own.y, input.pixels);
         QuadTexels behind = surfaces.fetch(4, own.x, own.y, input.pixels);
@@ -220,9 +221,9 @@ class PeeledComposition final : public Composition {
     }
 
   private:
-    void look_through(const Places& own, unsigned pixels, QuadTexels& behind, QuadTexels& behind_light,
+    void look_through(const QuadPlaces& own, unsigned pixels, QuadTexels& behind, QuadTexels& behind_light,
                       SurfaceAccess& surfaces) const {
-        const Places through = refracted(own, surfaces.fetch(2, own.x, own.y, pixels));
+        const QuadPlaces through = refracted(own, surfaces.fetch(2, own.x, own.y, pixels));
         const auto at = [&](std::uint32_t slot) { return surfaces.fetch(slot, through.x, through.y, pixels); };
         const QuadTexels pane = surfaces.fetch(3, own.x, own.y, pixels);
         const QuadTexels nearest = at(0), nearest_light = at(1), nearest_depth = at(3);

@@ -7,6 +7,7 @@ namespace traces {
 
 namespace {
 
+using pipeline::QuadPlaces;
 using pipeline::QuadTexels;
 using pipeline::ShaderInput;
 using pipeline::ShaderOutput;
@@ -63,7 +64,7 @@ class TwoClassComposition final : public Composition {
 
     void shade(const ShaderInput& input, SurfaceAccess& surfaces, ShaderOutput& output) const override {
         surfaces.issue(slots(), input.pixels);
-        const Places own(input);
+        const QuadPlaces own(input);
         TwoClassQuad seen = read_two_class(surfaces, 0, own.x, own.y, input.pixels);
         const QuadTexels front_light = surfaces.fetch(1, own.x, own.y, input.pixels);
         QuadTexels behind_light = surfaces.fetch(2, own.x, own.y, input.pixels);
@@ -79,11 +80,11 @@ class TwoClassComposition final : public Composition {
 
   private:
     /// The opaque surface aside, unless it lies in front of the pane.
-    void look_through(const Places& own, unsigned pixels, TwoClassQuad& seen, QuadTexels& behind_light,
+    void look_through(const QuadPlaces& own, unsigned pixels, TwoClassQuad& seen, QuadTexels& behind_light,
                       SurfaceAccess& surfaces) const {
         QuadTexels normals;
         for (std::size_t i = 0; i < 4; ++i) normals[i] = seen.transparent[i].normal;
-        const Places through = refracted(own, normals);
+        const QuadPlaces through = refracted(own, normals);
         const QuadSurfaces aside =
             read_two_class(surfaces, 0, through.x, through.y, pixels, models::opaque_entry, 1).opaque;
         const QuadTexels light = surfaces.fetch(2, through.x, through.y, pixels);

@@ -1,4 +1,4 @@
-// What the shaders of deferred shading share: places of a quad's pixels, and what counts as transparent.
+// What the shaders of deferred shading share: normals in the world, and what counts as transparent.
 #pragma once
 
 #include "pipeline/shader.hpp"
@@ -11,17 +11,6 @@
 namespace traces {
 
 constexpr unsigned even_rows = 0b0011; ///< of a quad
-
-struct Places {
-    pipeline::LaneIndices x{}, y{};
-
-    explicit Places(const pipeline::ShaderInput& input) {
-        for (std::size_t i = 0; i < 4; ++i) {
-            x[i] = static_cast<std::int32_t>(input.x + i % 2);
-            y[i] = static_cast<std::int32_t>(input.y + i / 2);
-        }
-    }
-};
 
 /// As eight bits keep it.
 inline bool is_transparent(float opacity) { return std::lround(std::clamp(opacity, 0.0F, 1.0F) * 255.0F) < 255; }

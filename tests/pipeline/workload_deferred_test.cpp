@@ -1,9 +1,7 @@
 // Deferred shading of one transparent layer (specification 003): passes, surfaces, rows, equations, methods against
 // each other, and that no design has anything to break.
 #include "pipeline/functional/fragment_operations.hpp"
-#include "pipeline/functional/surface_texel.hpp"
-#include "pipeline/functional/surface_values.hpp"
-#include "tests/support/replay.hpp"
+#include "tests/support/frame_surfaces.hpp"
 #include "traces/deferred/shadow_filter.hpp"
 #include "traces/deferred/spot_lights.hpp"
 
@@ -15,10 +13,10 @@ namespace workload_deferred_test {
 
 using pipeline::Frame;
 using pipeline::Pass;
-using pipeline::PassKind;
 using pipeline::SurfaceFormat;
 using Settings = std::vector<std::string>;
 using support::Replay;
+using support::surfaces_of;
 
 constexpr const char* showroom = "gen:showroom?triangles=9000&transparent=3000";
 constexpr std::uint32_t width = 96, height = 72;
@@ -37,25 +35,6 @@ Frame frame_of(const Settings& settings, std::uint32_t columns = 1920, std::uint
     static const traces::Scene scene = traces::load_scene(showroom);
     return traces::build_frame(scene, traces::make_view(scene, "auto", columns, rows), "deferred",
                                traces::WorkloadOptions::of(settings));
-}
-
-/// The surfaces as the reference leaves them after the last pass.
-pipeline::SurfaceStore surfaces_of(const Replay& replay) {
-    pipeline::SurfaceStore surfaces(replay.frame.surfaces);
-    std::size_t next = 0;
-    for (const Pass& pass : replay.frame.passes)
-        if (pass.kind == PassKind::clear)
-            for (const pipeline::SurfaceId surface : pass.clears) surfaces.clear(surface);
-        else
-            run_reference_pass(replay.frame, pass, replay.streams[next++], surfaces);
-    return surfaces;
-}
-
-std::vector<float> colours(const Replay& replay, const pipeline::SurfaceStore& surfaces, const std::string& name) {
-    for (pipeline::SurfaceId i = 0; i < surfaces.count(); ++i)
-        if (replay.frame.surfaces[i].name == name) return colours_of(surfaces, i);
-    ADD_FAILURE() << name;
-    return {};
 }
 
 std::size_t passes_named(const Frame& frame, const std::string& begin) {
@@ -105,7 +84,7 @@ TEST(Deferred, S003_D9_NoTransparentTexelOnAnEvenRow) {
     const Replay replay = deferred({"lights=1"});
     const pipeline::SurfaceStore surfaces = surfaces_of(replay);
     for (const char* name : {"colours", "shadow colours"}) {
-        const std::vector<float> texels = colours(replay, surfaces, name);
+        const std::vector<float> texels = support::colours_named(replay, surfaces, name);
         const std::size_t row = std::string(name) == "colours" ? width : 64;
         std::size_t transparent = 0;
         for (std::size_t i = 0; i < texels.size() / 4; ++i) {
@@ -153,7 +132,7 @@ TEST(Deferred, S003_D15_InterlacingChangesTransparentPixelsAndTheirBordersOnly) 
     Settings whole = common;
     whole.emplace_back("method=dp");
     const Replay pm = deferred(common), dp = deferred(whole);
-    const std::vector<float> nearest = colours(dp, surfaces_of(dp), "colours");
+    const std::vector<float> nearest = support::colours_named(dp, surfaces_of(dp), "colours");
     const auto pane = [&](std::size_t x, std::size_t y) { return nearest[(y * width + x) * 4 + 3] < 1.0F; };
     std::size_t differing = 0, equal_panes = 0;
     for (std::size_t y = 0; y < height; ++y)
@@ -231,7 +210,7 @@ TEST(Deferred, ForwardRenderingGivesTheSamePictureButForRounding) {
 
 TEST(Deferred, WithoutLightsOnlyTheAmbientIsLeft) {
     const Replay replay = deferred({"lights=0", "ambient=0.5", "refraction=false"}, "gen:showroom?transparent=0");
-    const std::vector<float> surface = colours(replay, surfaces_of(replay), "colours");
+    const std::vector<float> surface = support::colours_named(replay, surfaces_of(replay), "colours");
     for (std::size_t i = 0; i < surface.size(); i += 4)
         for (std::size_t c = 0; c < 3; ++c)
             EXPECT_NEAR(replay.reference.colour[i + c], surface[i + c] * 128.0F / 255.0F, 0.5F / 255.0F);

@@ -1,5 +1,6 @@
 // Deferred shading at its limits (specification 003, section 4, whose items tests are named after): rows, opacities and
 // refraction, each below, at and above the limit, beside numbers computed by hand.
+#include "pipeline/functional/number_formats.hpp"
 #include "pipeline/functional/surface_texel.hpp"
 #include "tests/support/frame_surfaces.hpp"
 #include "tests/support/stage.hpp"
@@ -224,6 +225,32 @@ TEST(DeferredExtremes, S003_E4_OpacitiesThatAreEqualAndOneCodeApart) {
     expect_blend(lower_of(red(0), blue(1)), 0.0F);
     EXPECT_FLOAT_EQ(lower_of(red(102), blue(103)).r, 102.0F / 255.0F); // the clearer one is in front,
     EXPECT_FLOAT_EQ(lower_of(red(102), blue(103)).b, 153.0F / 255.0F); // whatever lies below it
+}
+
+// Opaque is what eight bits keep as opaque, or a row of opaque surfaces would hold a pane of 254/255.
+TEST(DeferredExtremes, S003_E4_AnOpacityBetweenTheTwoHighestCodes) {
+    const float middle = 254.5F / 255.0F;
+    std::vector<float> opacities{254.4F / 255.0F, 254.6F / 255.0F, middle};
+    for (float below = middle, above = middle; opacities.size() < 19;) {
+        opacities.push_back(below = std::nextafter(below, 0.0F));
+        opacities.push_back(above = std::nextafter(above, 1.0F));
+    }
+    std::set<int> codes;
+    for (const float opacity : opacities) {
+        Stage stage(4, 4);
+        stage.add_whole(2.0, green);
+        stage.add_whole(1.0, {1, 0, 0, opacity});
+        const int code = pipeline::float_to_unorm8(opacity);
+        codes.insert(code);
+        for (const char* method : interlaced_methods) {
+            const Replay replay = unlit(stage, {method, "refraction=false"});
+            const auto colours = support::colours_named(replay, surfaces_of(replay), "colours");
+            EXPECT_EQ(codes_at(colours, 4, 1, 1).a, code) << method;
+            EXPECT_EQ(codes_at(colours, 4, 1, 2).a, 255) << method << ' ' << opacity; // the wall or the sheet
+            EXPECT_EQ(codes_at(colours, 4, 1, 2).r, code == 255 ? 255 : 0) << method << ' ' << opacity;
+        }
+    }
+    EXPECT_EQ(codes, (std::set{254, 255}));
 }
 
 } // namespace deferred_extremes_test

@@ -1,19 +1,18 @@
 // What the shaders of deferred shading share: normals in the world, and what counts as transparent.
 #pragma once
 
+#include "pipeline/functional/number_formats.hpp"
 #include "pipeline/shader.hpp"
 #include "traces/deferred/shaders.hpp"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 
 namespace traces {
 
 constexpr unsigned even_rows = 0b0011; ///< of a quad
 
 /// As eight bits keep it.
-inline bool is_transparent(float opacity) { return std::lround(std::clamp(opacity, 0.0F, 1.0F) * 255.0F) < 255; }
+inline bool is_transparent(float opacity) { return pipeline::float_to_unorm8(opacity) < 255; }
 
 inline unsigned transparent_pixels(const pipeline::QuadTexels& colours) {
     unsigned pixels = 0;

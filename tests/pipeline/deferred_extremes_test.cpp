@@ -253,4 +253,40 @@ TEST(DeferredExtremes, S003_E4_AnOpacityBetweenTheTwoHighestCodes) {
     EXPECT_EQ(codes, (std::set{254, 255}));
 }
 
+// Behind an opaque row a pane sees the same row: one that does not bend changes nothing.
+TEST(DeferredExtremes, S003_E18_APaneThatDoesNotBendShowsWhatIsRightBehind) {
+    for (const auto& [normal, coefficient] : {std::pair{glm::vec3(0, 0, 1), "refraction_coefficient=1"},
+                                              std::pair{glm::vec3(0, 1, 0), "refraction_coefficient=0"}}) {
+        Stage stage(16, 15);
+        stage.add_whole(2.0, glm::vec4(1.0F), {0, 0, 1}, true);
+        stage.add_whole(1.0, {0, 0, 0, 0.5F}, normal);
+        for (const char* method : methods)
+            EXPECT_EQ(unlit(stage, {method, coefficient}).reference.colour,
+                      unlit(stage, {method, "refraction=false"}).reference.colour)
+                << method << ' ' << coefficient;
+    }
+}
+
+// Offsets of 8 pixels in each direction: the last of them that lands on the edge, and those beyond, which stop there.
+TEST(DeferredExtremes, S003_E18_WhatLiesBesideThePictureIsItsEdge) {
+    const auto ramp = [](int at) { return std::round(255.0 * (at + 0.5) / 64.0); };
+    const auto behind_pane = [](double wall) { return static_cast<int>(std::lround(wall * 127.0 / 255.0)); };
+    for (const glm::ivec2& offset : {glm::ivec2(8, 0), glm::ivec2(-8, 0), glm::ivec2(0, 8), glm::ivec2(0, -8)}) {
+        Stage stage(64, 64);
+        stage.add_whole(2.0, glm::vec4(1.0F), {0, 0, 1}, true);
+        stage.add_whole(1.0, {0, 0, 0, 0.5F}, {offset.x / 8, -offset.y / 8, 0}); // rows go down
+        for (const std::string method : {"method=pm", "method=dp", "method=fwd"}) {
+            const Replay replay = unlit(stage, {method, "refraction_coefficient=0.125"});
+            const bool interlaced = method != "method=dp";
+            for (int y = interlaced ? 1 : 0; y < 64; ++y)
+                for (int x = 0; x < 64; ++x) {
+                    const int column = std::clamp(x + offset.x, 0, 63), row = std::clamp(y + offset.y, 0, 63);
+                    const int opaque_row = interlaced && row % 2 == 1 ? row - 1 : row;
+                    const glm::ivec3 seen(behind_pane(ramp(column)), behind_pane(ramp(opaque_row)), 0);
+                    ASSERT_EQ(pixel(replay, x, y), seen) << method << ' ' << x << ' ' << y << ' ' << offset.x;
+                }
+        }
+    }
+}
+
 } // namespace deferred_extremes_test

@@ -142,7 +142,7 @@ class InterlacedComposition final : public Composition {
         QuadTexels front_colour = here, behind_colour = there;
         for (std::size_t i = 0; i < 4; ++i)
             if (there[i].a < here[i].a) std::swap(front_colour[i], behind_colour[i]);
-        if (refracts()) look_through(input.pixels, front, behind, behind_colour, surfaces);
+        if (refracts()) look_through(own, input.pixels, front, behind, behind_colour, surfaces);
         QuadTexels front_light, behind_light;
         front_light.fill(already_lit);
         behind_light.fill(already_lit);
@@ -166,10 +166,10 @@ class InterlacedComposition final : public Composition {
 
     /// Another opaque surface than the one right behind, unless that lies in front of the pane; without depths, unless
     /// no pane is there (B9).
-    void look_through(unsigned pixels, const QuadPlaces& front, QuadPlaces& behind, QuadTexels& behind_colour,
-                      SurfaceAccess& surfaces) const {
+    void look_through(const QuadPlaces& own, unsigned pixels, const QuadPlaces& front, QuadPlaces& behind,
+                      QuadTexels& behind_colour, SurfaceAccess& surfaces) const {
         const QuadTexels normals = surfaces.fetch(normals_, front.x, front.y, pixels);
-        QuadPlaces through = refracted(front, normals);
+        QuadPlaces through = refracted(own, normals);
         const QuadTexels first = surfaces.fetch(0, through.x, through.y, pixels);
         const QuadPlaces above = one_above(through);
         const QuadTexels second = surfaces.fetch(0, above.x, above.y, pixels);

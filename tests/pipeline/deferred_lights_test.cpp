@@ -240,4 +240,39 @@ TEST(DeferredLights, S003_E13_EachPixelIsLitOnceWhereverTheEyeIs) {
     EXPECT_EQ(dark, std::vector<float>(dark.size()));
 }
 
+// Where nothing is, the depth is 1: with an infinite far plane that place has no numbers.
+TEST(DeferredLights, S003_E3_NothingIsLitWhereNothingIs) {
+    Stage stage(16, 16);
+    stage.add({4, 4, 12, 12, 1.0});
+    stage.add_light(glm::vec3(0.0F), 100.0F);
+    for (const char* projection : {"1,0,0,0,0,1,0,0,0,0,-1,-1,0,0,-0.2,0", "1,0,0,0,0,1,0,0,0,0,-1.02,-1,0,0,-0.202,0"})
+        for (const char* method : methods) {
+            const Replay replay = stage.replay("deferred", {method, "lights=1", "ambient=0.5", "map_size=16"},
+                                               std::string("1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1,") + projection);
+            for (std::size_t y = 0; y < 16; ++y)
+                for (std::size_t x = 0; x < 16; ++x) {
+                    const glm::ivec3 seen = codes_at(replay.reference.colour, 16, x, y);
+                    const bool sheet = x >= 4 && x < 12 && y >= 4 && y < 12;
+                    EXPECT_EQ(seen != glm::ivec3(0), sheet) << method << ' ' << x << ' ' << y;
+                    EXPECT_EQ(seen.r > 200, sheet) << method << ' ' << x << ' ' << y; // not the ambient light alone
+                }
+        }
+}
+
+TEST(DeferredLights, S003_D16_PicturesOfFewAndOfOddlyManyPixelsAreThoseOfTheReference) {
+    for (const auto& [width, height] : {std::pair{1U, 1U}, {1U, 2U}, {2U, 1U}, {3U, 3U}, {17U, 15U}})
+        for (const char* method : methods) {
+            Stage stage(width, height);
+            stage.add_whole(2.0, glm::vec4(1.0F), {0, 0, 1}, true);
+            stage.add_whole(1.0, {1.0F, 0.5F, 0.25F, 0.4F}, glm::normalize(glm::vec3(1, 1, 1)));
+            stage.add_light(glm::vec3(0.0F), 8.0F);
+            const Replay replay =
+                stage.replay("deferred", {method, "lights=1", "map_size=3", "refraction_coefficient=0.5"});
+            for (const char* design : {"existing", "blender"})
+                for (const pipeline::PassJudgement& judgement : replay.run(design).judgements)
+                    EXPECT_EQ(judgement.wrong_places, 0U)
+                        << method << ' ' << judgement.pass << ' ' << judgement.surface;
+        }
+}
+
 } // namespace deferred_lights_test

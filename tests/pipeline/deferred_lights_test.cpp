@@ -193,11 +193,13 @@ std::vector<float> lit_once(const Replay& replay, const traces::SpotLight& light
 TEST(DeferredLights, S003_E13_EachPixelIsLitOnceWhereverTheEyeIs) {
     Stage stage(64, 48);
     traces::add_object(stage.scene, traces::box_mesh({-2, -2, -2}, {2, 2, 2}), "room", glm::vec4(1.0F), "stage");
+    traces::add_object(stage.scene, traces::box_mesh({0.1, -2, -0.6}, {2, 2, -0.5}), "screen", glm::vec4(1.0F),
+                       "stage"); // across the sides of the cone
     for (const double x : {-0.4, 0.5})
         traces::add_object(stage.scene, traces::sphere_mesh({x, 0.1, -0.8}, 0.4, 24), "ball", glm::vec4(1.0F), "stage");
     stage.add_light({0, 0, 1.5F}, 3.4F);
     stage.scene.lights[0].outer_cone = 0.5F;
-    stage.scene.lights[0].inner_cone = 0.3F;
+    stage.scene.lights[0].inner_cone = 0.5F; // lit up to its sides
     const traces::SpotLight light = traces::spot_lights(stage.scene, 1).front();
     const double corner = std::tan(light.outer) / std::cos(std::numbers::pi / 16.0); // of its 16 sides, at distance 1
     std::vector<std::string> cameras{"0,0,0,0,0,-1,60",  "0,0,1,0.3,0.2,-1,90",   "0,0,1.9,0,0,0,60",

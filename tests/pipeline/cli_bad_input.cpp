@@ -120,6 +120,39 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{{"study", "batchin"}, 1, "did you mean 'batching'?"},
         Mistake{{"study", "/no/such.toml"}, 1, "/no/such.toml: there is no such file"}));
 
+std::vector<std::string> deferred_with(const std::string& option, const std::string& value) {
+    return {"run", "gen:slabs", "--workload", "deferred", "--size", "16x16", option, value};
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Deferred, CliBadInput,
+    ::testing::Values(
+        Mistake{deferred_with("--set", "workload.method=pn"), 1,
+                "workload deferred: method: expected one of pm | dp | fwd | fw, got \"pn\"; did you mean 'pm'?"},
+        Mistake{deferred_with("--set", "workload.lights=-1"), 1, "lights: expected whole number 0 to 64, got -1"},
+        Mistake{deferred_with("--set", "workload.lights=65"), 1, "lights: expected whole number 0 to 64, got 65"},
+        Mistake{deferred_with("--set", "workload.lights=many"), 1,
+                "lights: expected whole number 0 to 64, got \"many\""},
+        Mistake{deferred_with("--set", "workload.lights=1.5"), 1, "lights: expected whole number 0 to 64, got 1.5"},
+        Mistake{deferred_with("--set", "workload.map_size=0"), 1, "map_size: expected whole number 2 to 8192, got 0"},
+        Mistake{deferred_with("--set", "workload.map_size=1"), 1, "map_size: expected whole number 2 to 8192, got 1"},
+        Mistake{deferred_with("--set", "workload.map_size=8193"), 1, "map_size: expected whole number 2 to 8192"},
+        Mistake{deferred_with("--set", "workload.refraction_coefficient=nan"), 1,
+                "refraction_coefficient: expected number 0 to 1, got \"nan\""},
+        Mistake{deferred_with("--set", "workload.refraction_coefficient=inf"), 1,
+                "refraction_coefficient: expected number 0 to 1, got \"inf\""},
+        Mistake{deferred_with("--set", "workload.refraction_coefficient=-1"), 1,
+                "refraction_coefficient: expected number 0 to 1, got -1"},
+        Mistake{deferred_with("--set", "workload.intensity=inf"), 1, "intensity: expected number 0 to 1000"},
+        Mistake{deferred_with("--samples", "4"), 1, "whose rows are told apart by number, got 4"},
+        Mistake{deferred_with("--camera", "1,0,0,0,0,1,0,0,0,0,1,0,0,0,-5,1,1,0,0,0,0,1,0,0,0,0,-0.1,0,0,0,-1,1"), 1,
+                "workload deferred: expected a perspective camera, got a parallel projection"},
+        Mistake{{"run", "gen:stack", "--workload", "deferred", "--size", "16x16"},
+                1,
+                "workload deferred: expected a scene with places in a world, those of gen:stack are on the screen"},
+        Mistake{{"run", "gen:slabs", "--workload", "deferred", "--size", "0x1"}, 1, "--size: expected WIDTHxHEIGHT"},
+        Mistake{{"run", "gen:slabs", "--workload", "deferred", "--size", "16x16385"}, 1, "1 to 16384 pixels"}));
+
 // A triangle as glTF, so that one thing at a time can be made wrong.
 std::string triangle(const std::string& buffer, int index_count, int largest_count, const std::string& length) {
     return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
@@ -202,6 +235,35 @@ TEST_F(CliBadScene, GoodOneIsAccepted) {
     write("good.gltf", triangle("a.bin", 3, 3, "42"));
     const auto outcome = run_program({"compare", (folder.path() / "good.gltf").string(), "--size", "16x16"});
     EXPECT_EQ(outcome.status, 0) << outcome.error;
+}
+
+// What deferred shading takes, however odd it looks, and what it says of it.
+TEST_F(CliBadScene, DeferredShadingWithLittleToShow) {
+    write("a.bin", bytes_of(good, {0, 1, 2}));
+    write("good.gltf", triangle("a.bin", 3, 3, "42"));
+    const std::string path = (folder.path() / "good.gltf").string();
+    const std::string small = "workload.map_size=16";
+    const std::vector<std::pair<std::vector<std::string>, std::string>> uses{
+        {{"--size", "16x16", "--set", small}, "some draws have no normals: those of their triangles are taken"},
+        {{"--size", "16x16", "--set", "workload.lights=0"}, "no lights: surfaces are seen in the ambient light alone"},
+        {{"--size", "16x16", "--set", "workload.map_size=3"}, ""},
+        {{"--size", "1x1", "--set", small}, ""},
+        {{"--size", "1x2", "--set", small}, ""},
+        {{"--size", "16x16384", "--set", small, "--set", "workload.lights=1"}, ""}};
+    for (const auto& [options, note] : uses) {
+        std::vector<std::string> arguments{"run", path, "--workload", "deferred"};
+        arguments.insert(arguments.end(), options.begin(), options.end());
+        const auto outcome = run_program(arguments);
+        EXPECT_EQ(outcome.status, 0) << options[1] << outcome.error;
+        EXPECT_NE(outcome.out.find(note), std::string::npos) << options[1] << outcome.out;
+    }
+}
+
+TEST_F(CliBadScene, DeferredShadingOfNothing) {
+    write("nothing.gltf", R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[]}]})");
+    const std::vector<std::string> arguments{"run", (folder.path() / "nothing.gltf").string(), "--workload",
+                                             "deferred"};
+    expect_one_line(run_program(arguments), {arguments, 1, "nothing.gltf"});
 }
 
 } // namespace cli_bad_input_test

@@ -334,6 +334,7 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const Defe
         return frame.resources->geometries[draw.geometry].find(pipeline::Semantic::normal) != nullptr;
     });
     if (!smooth) frame.notes.emplace_back("some draws have no normals: those of their triangles are taken");
+    if (params.lights == 0) frame.notes.emplace_back("no lights: surfaces are seen in the ambient light alone");
     return DeferredGraph(scene, std::move(frame), params).lower();
 }
 

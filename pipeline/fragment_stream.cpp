@@ -6,9 +6,9 @@ namespace pipeline {
 
 namespace {
 
-template <class Element>
-std::uint64_t held(const std::vector<Element>& vector) {
-    return std::uint64_t{vector.capacity()} * sizeof(Element);
+template <class Vector>
+std::uint64_t held(const Vector& vector) {
+    return std::uint64_t{vector.capacity()} * sizeof(vector[0]);
 }
 
 } // namespace

@@ -1,8 +1,9 @@
 // The scene after everything that does not depend on order: triangles rasterized into quads, shaded once.
 //
-// It is computed by functional/ (pure, parallel, the same for any thread count) and replayed by every design. Quads lie
-// in submission order: by draw, instance, primitive, clipped part, 8x8 tile (row by row within the triangle's bounding
-// tiles), 2x2 quad (row by row within the tile), sample.
+// It is computed by functional/ (pure, parallel, the same for any thread count) and replayed by every design. Passes
+// that draw the same share what does not depend on their shaders. Quads lie in submission order: by draw, instance,
+// primitive, clipped part, 8x8 tile (row by row within the triangle's bounding tiles), 2x2 quad (row by row within the
+// tile), sample.
 //
 // With several samples to a pixel, each quad of pixels is a *group*: a sample quad for every sample that the triangle
 // covers in any of its pixels, one behind the other. A group is shaded once: its sample quads have equal colours.
@@ -10,6 +11,7 @@
 
 #include "pipeline/output/kbuffer.hpp"
 #include "pipeline/sample_planes.hpp"
+#include "pipeline/shared_vector.hpp"
 
 #include <array>
 #include <cstdint>
@@ -76,18 +78,18 @@ struct FragmentStream {
     std::uint32_t width = 0, height = 0; ///< pixels
     std::uint32_t samples = 1;           ///< of a pixel
 
-    std::vector<DrawRange> draws;
-    std::vector<Primitive> primitives;
-    std::vector<Triangle> triangles;
-    std::vector<Quad> quads;
+    SharedVector<DrawRange> draws;
+    SharedVector<Primitive> primitives;
+    SharedVector<Triangle> triangles;
+    SharedVector<Quad> quads;
 
     // Parallel to `quads`; colours and texture lines are empty when nothing needs them.
-    std::vector<std::array<float, 4>> depths;      ///< window depth in [0,1] at each pixel centre, or sample
+    SharedVector<std::array<float, 4>> depths;     ///< window depth in [0,1] at each pixel centre, or sample
     std::vector<std::array<glm::vec4, 4>> colours; ///< shaded linear RGBA, not premultiplied: the first output
     std::vector<std::vector<std::array<glm::vec4, 4>>> more_outputs; ///< of a shader with several: from the second on
     /// What the shader of the pass is given, where it has one of its own; see ShaderInput.
-    std::vector<std::array<glm::vec4, 4>> given_colours, given_normals;
-    std::vector<std::uint32_t> texture_lines; ///< 64-byte line of the quad's texture fetch, ~0 = no fetch
+    SharedVector<std::array<glm::vec4, 4>> given_colours, given_normals;
+    SharedVector<std::uint32_t> texture_lines; ///< 64-byte line of the quad's texture fetch, ~0 = no fetch
 
     std::uint64_t groups = 0;              ///< quads of pixels; as many as `quads` with one sample
     std::uint64_t fragments = 0;           ///< covered pixels over all quads, or samples

@@ -31,6 +31,7 @@ enum class PassKind : std::uint8_t {
     clear,   ///< sets `clears` to their cleared values
     draw,    ///< rasterizes `draws`
     screen,  ///< runs `shader` on every pixel of its targets
+    compose, ///< the same without taking time: a picture of what the frame has left
     resolve, ///< reads the finished surfaces and writes the picture; timed where Frame::resolve says how
 };
 
@@ -81,6 +82,7 @@ struct Pass {
     }
     /// Sends fragments.
     bool rasterizes() const { return kind == PassKind::draw || kind == PassKind::screen; }
+    bool writes_targets() const { return rasterizes() || kind == PassKind::compose; }
     /// Its shader has to wait for what earlier passes finish.
     bool reads_surfaces() const { return !reads.empty(); }
     bool runs_program() const { return kbuffer != no_surface; }
@@ -133,7 +135,7 @@ struct Frame {
     std::vector<std::string> notes;               ///< what was not done as asked for, one line each
     std::vector<LeftOut> left_out;                ///< by the pass graph: culled passes, unread attributes
     std::shared_ptr<const ModifyProgram> program; ///< null when no pass has a k-buffer
-    std::shared_ptr<const Resolve> resolve;       ///< null: the layers are composited front to back
+    std::shared_ptr<const Resolve> resolve;       ///< of resolve passes
     SurfaceFormat depth_format = SurfaceFormat::d24;
     SurfaceFormat colour_format = SurfaceFormat::rgba8;
     glm::vec4 background{1.0F};

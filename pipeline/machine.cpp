@@ -14,6 +14,7 @@
 #include <array>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 namespace pipeline {
 
@@ -111,7 +112,7 @@ void Machine::build() {
 
 bool Machine::pass_reads_textures() const {
     const bool reads = std::any_of(frame_->passes.begin(), frame_->passes.end(),
-                                   [](const Pass& pass) { return pass.reads_surfaces(); });
+                                   [](const Pass& pass) { return pass.rasterizes() && pass.reads_surfaces(); });
     return reads || frame_->needs.textures || peels() || keeps_lists() || frame_->screen_draw;
 }
 
@@ -193,7 +194,13 @@ void Machine::stream_surface(std::uint64_t read_bytes, std::uint64_t write_bytes
     units_->simulation.run(options_.stop);
 }
 
-void Machine::run_draw(const FragmentStream& stream, const Needs& needs) {
+bool Machine::switches_targets(const Pass& pass) {
+    std::vector<SurfaceId> targets = pass.targets;
+    targets.insert(targets.end(), {pass.depth, pass.kbuffer});
+    return std::exchange(targets_, targets) != targets;
+}
+
+void Machine::run_draw(const FragmentStream& stream, const Needs& needs, bool switches) {
     Units& units = *units_;
     units.pass.stream = &stream;
     for (Rop& rop : units.rops) rop.begin_pass();
@@ -201,11 +208,13 @@ void Machine::run_draw(const FragmentStream& stream, const Needs& needs) {
     if (units.locks) units.locks->begin_pass();
     if (units.early_depth) units.early_depth->begin_pass();
     set_costs(needs);
+    DrawSnapshot before = counters_of_draws(stream);
     units.front.read(needs);
-    units.front.start(stream, frame_->draws);
+    units.front.start(stream, frame_->draws, switches);
     units.simulation.run(options_.stop);
     for (Rop& rop : units.rops) rop.write_back_all();
     units.simulation.run(options_.stop);
+    book_draws(std::move(before));
 }
 
 void Machine::bind(const Pass& pass, const FragmentStream& stream) {
@@ -254,7 +263,7 @@ void Machine::draw(const Pass& pass, const FragmentStream& unshaded) {
         context.end = FragmentEnd::depth_colour;
         begin(pass.name);
         resolve_cleared(pass.reads);
-        run_draw(stream, frame_->needs_of(pass));
+        run_draw(stream, frame_->needs_of(pass), switches_targets(pass));
         end();
         return;
     }
@@ -262,6 +271,7 @@ void Machine::draw(const Pass& pass, const FragmentStream& unshaded) {
     if (plan_.site == UpdateSite::passes || plan_.site == UpdateSite::lists) {
         plan_.site == UpdateSite::passes ? draw_layers(pass, stream) : draw_lists(pass, stream);
         store_entries(units_->surfaces, pass.kbuffer, layers_);
+        targets_.clear(); // it has used others
         return;
     }
     context.end = plan_.site == UpdateSite::blender ? FragmentEnd::kbuffer_blend : FragmentEnd::kbuffer_store;
@@ -269,7 +279,7 @@ void Machine::draw(const Pass& pass, const FragmentStream& unshaded) {
     resolve_cleared(pass.reads);
     if (context.end == FragmentEnd::kbuffer_store && !plan_.shader.tile_memory)
         resolve_cleared(units_->kbuffer_clear, kbuffer_bytes());
-    run_draw(stream, frame_->needs_of(pass));
+    run_draw(stream, frame_->needs_of(pass), switches_targets(pass));
     end();
     store_entries(units_->surfaces, pass.kbuffer, units_->kbuffer->image());
 }
@@ -313,6 +323,7 @@ void Machine::screen(const ScreenPass& pass, std::uint32_t triangle) {
     begin(pass.name);
     run_draw(stream, {});
     end();
+    targets_.clear();
     context.screen = nullptr;
 }
 
@@ -337,6 +348,9 @@ RunResult Machine::run(const ReferenceImage& reference) {
         case PassKind::draw:
         case PassKind::screen:
             run_and_judge(number, streams_[next++], reference);
+            break;
+        case PassKind::compose:
+            compose_and_judge(number, reference);
             break;
         case PassKind::resolve:
             resolve();

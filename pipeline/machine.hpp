@@ -82,7 +82,9 @@ class Machine {
     bool keeps_lists() const;
     bool locks() const;
     bool rejects_early() const;
-    void run_draw(const FragmentStream& stream, const Needs& needs);
+    /// @param switches writes to other targets than the draw before
+    void run_draw(const FragmentStream& stream, const Needs& needs, bool switches = true);
+    bool switches_targets(const Pass& pass); ///< and remembers those of the pass
     void stream_surface(std::uint64_t read_bytes, std::uint64_t write_bytes, bool resolve = false);
     bool clears_fast(const SurfaceLayout& layout) const;
     /// Marks the surface cleared where the table of fast clears holds it; returns the bytes to be written instead.
@@ -99,6 +101,7 @@ class Machine {
     SurfaceLayout layout_of(const View& view) const { return layout_of(view.width, view.height, view.samples); }
     /// Compares what pass `number` wrote with the reference of it on `before`, the surfaces as it found them.
     void judge(std::size_t number, const FragmentStream& stream, SurfaceStore& before, const ReferenceImage& reference);
+    void compose_and_judge(std::size_t number, const ReferenceImage& reference);
     void note_clear(std::size_t number, const ReferenceImage& reference);
     void list_units(RunResult& result) const;
     void collect_pixels(RunResult& result, const ReferenceImage& reference) const;
@@ -110,9 +113,17 @@ class Machine {
     std::vector<std::uint8_t> wrong_fixed_places(const RunResult& result, const ReferenceImage& reference) const;
     bool explained(std::size_t place) const; ///< a hazard happened here
     void collect_hazards(RunResult& result) const;
-    void collect_counters(RunResult& result) const;
+    void collect_counters(RunResult& result);
     void collect_vertex_caches(RunResult& result) const;
-    void collect_draw(RunResult& result, std::uint32_t draw) const;
+    void collect_draws(RunResult& result);
+    struct DrawCounters {
+        std::uint32_t draw = 0;
+        std::vector<std::uint64_t> counters; ///< as RunResult::draw_counters names them
+    };
+    using DrawSnapshot = std::vector<DrawCounters>;
+    std::vector<std::uint64_t> draw_counters(std::uint32_t draw) const;
+    DrawSnapshot counters_of_draws(const FragmentStream& stream) const;
+    void book_draws(DrawSnapshot&& before); ///< what they gained since, as the present pass's
     bool uses_depth() const;
     bool uses_colour() const;
 
@@ -125,8 +136,10 @@ class Machine {
     std::unique_ptr<Units> units_;
     std::vector<PassResult> passes_;
     std::vector<PassJudgement> judgements_;
+    std::vector<PassDrawResult> pass_draws_;
     std::vector<bool> diverged_;           ///< by surface: it is not what the reference of the frame has at this time
     std::vector<float> layers_;            ///< k-buffer content put together from peeled layers
+    std::vector<SurfaceId> targets_;       ///< that the last pass wrote to
     std::uint64_t lost_before_clears_ = 0; ///< updates of k-buffers that were cleared since
     bool textures_linked_ = false;
 };

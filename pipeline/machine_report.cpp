@@ -47,14 +47,6 @@ Json link_report(std::uint64_t bytes, std::uint64_t fragments) {
             {"per_fragment", fragments == 0 ? 0.0 : static_cast<double>(bytes) / static_cast<double>(fragments)}};
 }
 
-std::vector<std::string> names_of_draw_counters() {
-    const auto& geometry = sim::field_names<GeometryDrawStats>;
-    std::vector<std::string> names(geometry.begin(), geometry.end());
-    names.insert(names.end(), {"quads", "fragments", "hazardous_quads", "first_cycle", "last_cycle"});
-    for (const auto client : memory_client_names) names.push_back(fmt::format("dram_{}_bytes", client));
-    return names;
-}
-
 /// The bits that any sample of a pixel has.
 std::vector<std::uint8_t> of_pixels(const View& view, std::vector<std::uint8_t> places) {
     const std::size_t pixels = std::size_t{view.width} * view.height;
@@ -297,7 +289,7 @@ void Machine::collect_hazards(RunResult& result) const {
     result.hazards.pixels = result.hazard_mask.size() - static_cast<std::size_t>(spared);
 }
 
-void Machine::collect_counters(RunResult& result) const {
+void Machine::collect_counters(RunResult& result) {
     const Units& units = *units_;
     const MachineStats stats = units.stats();
     result.fragments = stats.rop.fragments;
@@ -344,37 +336,13 @@ void Machine::collect_counters(RunResult& result) const {
     result.bytes["crossbar"] = link_report(stats.crossbar.bytes, result.fragments);
 
     result.area = area_json(on_chip_area(gpu_, *frame_, *design_));
-    result.draw_counters = names_of_draw_counters();
-    for (std::uint32_t draw = 0; draw < frame_->draws.size(); ++draw) collect_draw(result, draw);
+    collect_draws(result);
 }
 
 void Machine::collect_vertex_caches(RunResult& result) const {
     const GeometryStats geometry = units_->front.stats();
     result.caches["post_transform"] = cache_report(geometry.vertex_reuse.hits, geometry.vertex_reuse.misses);
     result.caches["pre_transform"] = cache_report(geometry.vertex_fetch.cache.hits, geometry.vertex_fetch.cache.misses);
-}
-
-void Machine::collect_draw(RunResult& result, std::uint32_t draw) const {
-    DrawOutput output;
-    for (const Rop& rop : units_->rops) {
-        const DrawOutput& part = rop.draw_outputs()[draw];
-        output.quads += part.quads;
-        output.fragments += part.fragments;
-        output.hazards += part.hazards;
-        output.first_cycle = std::min(output.first_cycle, part.first_cycle);
-        output.last_cycle = std::max(output.last_cycle, part.last_cycle);
-    }
-    std::vector<std::uint64_t> counters;
-    counters.reserve(result.draw_counters.size());
-    const GeometryDrawStats geometry = units_->front.draw_stats(draw);
-    sim::for_each_field(geometry,
-                        [&counters](const auto&, const sim::Counter& counter) { counters.push_back(counter.value); });
-    counters.insert(counters.end(), {output.quads, output.fragments, output.hazards,
-                                     output.quads == 0 ? 0 : output.first_cycle, output.last_cycle});
-    const MemoryBytes bytes = units_->memory.draw_bytes(draw);
-    counters.insert(counters.end(), bytes.begin(), bytes.end());
-    CHECK(counters.size() == result.draw_counters.size());
-    result.draws.push_back({frame_->draws[draw].name, draw, std::move(counters)});
 }
 
 } // namespace pipeline

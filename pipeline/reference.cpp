@@ -1,6 +1,7 @@
 #include "pipeline/reference.hpp"
 
 #include "pipeline/draw_states.hpp"
+#include "pipeline/functional/compose_pass.hpp"
 #include "pipeline/functional/composite.hpp"
 #include "pipeline/functional/fragment_operations.hpp"
 #include "pipeline/functional/parallel.hpp"
@@ -240,6 +241,11 @@ class Reference {
         case PassKind::screen:
             draw(pass);
             break;
+        case PassKind::compose:
+            compose(pass, surfaces_, threads_);
+            if (image_.composed.count() == 0) image_.composed = SurfaceStore(frame_.surfaces);
+            for (const SurfaceId surface : written_surfaces(pass)) image_.composed.share(surfaces_, surface);
+            break;
         case PassKind::resolve:
             if (frame_.main_kbuffer() == no_surface) break;
             read_surfaces();
@@ -269,6 +275,7 @@ class Reference {
     void finish() {
         CHECK(next_stream_ == streams_.size());
         read_surfaces();
+        if (frame_.needs.kbuffer && frame_.output != no_surface) image_.picture = image_.colour;
         image_.accepted_insertions = counts_.accepted;
         image_.missed_reads = counts_.missed_reads;
         image_.missed_pixels = counts_.missed_pixels;
@@ -288,7 +295,7 @@ class Reference {
 
 std::vector<SurfaceId> written_surfaces(const Pass& pass) {
     std::vector<SurfaceId> surfaces = pass.clears;
-    if (!pass.rasterizes()) return surfaces;
+    if (!pass.writes_targets()) return surfaces;
     for (const SurfaceId target : pass.targets)
         if (target != no_surface) surfaces.push_back(target);
     if (pass.writes_depth() || pass.tests_stencil()) surfaces.push_back(pass.depth);

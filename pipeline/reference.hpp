@@ -20,7 +20,9 @@ struct ReferenceImage {
     std::vector<float> depth;          ///< window depth per place, as the depth format holds it
     std::vector<std::uint8_t> stencil; ///< per place, where the depth format has any
     std::vector<float> colour;         ///< RGBA per place of the "colour" surface, as the colour format holds it
-    std::vector<float> picture;        ///< RGBA per pixel that the resolve pass makes; empty without one
+    std::vector<float>
+        picture;           ///< RGBA per pixel of frames with a k-buffer: the output, or what the resolve pass makes
+    SurfaceStore composed; ///< has what passes without time wrote last, and nothing else
 
     /// After each pass of the frame, of each surface that it writes: see written_surfaces().
     std::vector<std::vector<std::uint64_t>> digests;

@@ -1,5 +1,5 @@
 // The contract of the last pass of a frame: how finished surfaces become the picture (specification 004, workload W2,
-// pass 2). A workload whose picture is not the plain composite of functional/composite.hpp implements it.
+// pass 2). A workload whose picture no shader of a pass makes implements it.
 //
 // The picture is a pure function. Where its time matters, as in a shadow kernel that takes longer than all the rest,
 // the workload also says which full-screen passes compute it and what each quad of them fetches and executes; else the

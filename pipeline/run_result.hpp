@@ -67,6 +67,13 @@ struct DrawResult {
     std::vector<std::uint64_t> counters;
 };
 
+/// The part of a draw's counters that one pass added; cycles of first and last quads are 0.
+struct PassDrawResult {
+    std::uint32_t pass = 0; ///< index into RunResult::passes
+    std::uint32_t draw = 0;
+    std::vector<std::uint64_t> counters;
+};
+
 /// A surface after a pass, against the reference of that pass alone on what the run had before it.
 struct PassJudgement {
     std::string pass, surface;
@@ -120,6 +127,7 @@ struct RunResult {
     std::vector<PassJudgement> judgements;  ///< of the frame's passes that send fragments, in order
     std::vector<std::string> draw_counters; ///< names of DrawResult::counters
     std::vector<DrawResult> draws;
+    std::vector<PassDrawResult> pass_draws; ///< where a pass added anything, in the order of the passes
 
     /// A counter of draw number `draw` by name; 0 when there is none of that name.
     std::uint64_t draw_counter(std::size_t draw, std::string_view counter) const {

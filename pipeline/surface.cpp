@@ -74,6 +74,13 @@ void SurfaceStore::clear(SurfaceId id) {
         for (Page& page : level.pages) page.reset();
 }
 
+void SurfaceStore::share(const SurfaceStore& other, SurfaceId id) {
+    Surface& surface = surfaces_[id];
+    surface.high_water = std::max(surface.high_water, allocated(surface));
+    for (std::size_t level = 0; level < surface.levels.size(); ++level)
+        surface.levels[level].pages = other.surfaces_[id].levels[level].pages;
+}
+
 // Pages at the edge reach beyond the surface; what lies there is never written.
 std::uint64_t SurfaceStore::digest(SurfaceId id) const {
     const Surface& surface = surfaces_[id];

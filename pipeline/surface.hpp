@@ -104,6 +104,8 @@ class SurfaceStore {
 
     /// Sets every texel to the cleared value and gives the pages back.
     void clear(SurfaceId surface);
+    /// Takes the content that the same surface has in `other`.
+    void share(const SurfaceStore& other, SurfaceId surface);
     /// Hash of all its bytes; that of a page that nothing was written to and of one that holds the same are equal.
     std::uint64_t digest(SurfaceId surface) const;
     /// Places of level 0 at which both hold different bytes.

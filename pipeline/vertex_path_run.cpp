@@ -37,22 +37,22 @@ FragmentStream uncut_stream(const Frame& frame, const Pass& pass) {
         const Draw& draw = frame.draws[number];
         const std::uint32_t each = frame.resources->geometries[draw.geometry].primitive_count();
         for (std::uint32_t instance = 0; instance < draw.instances.size(); ++instance) {
-            stream.draws.push_back({number, instance, static_cast<std::uint32_t>(primitives), each, 0, 0});
+            stream.draws.own().push_back({number, instance, static_cast<std::uint32_t>(primitives), each, 0, 0});
             primitives += each;
             if (primitives > std::numeric_limits<std::uint32_t>::max())
                 throw sim::InputError(fmt::format("pass {}: expected at most 2^32 - 1 primitives", pass.name));
         }
     }
-    stream.primitives.resize(primitives);
+    stream.primitives.own().resize(primitives);
     std::uint32_t triangles = 0;
     for (const DrawRange& range : stream.draws) {
         const Geometry& geometry = frame.resources->geometries[frame.draws[range.draw].geometry];
         const PrimitiveReader read(*frame.resources, geometry);
         for (std::uint32_t i = 0; i < range.primitives; ++i) {
             const bool degenerate = is_degenerate(geometry.topology, read(i));
-            stream.primitives[range.first_primitive + i] = {triangles, static_cast<std::uint8_t>(degenerate ? 0 : 1),
-                                                            degenerate ? PrimitiveFate::culled_degenerate
-                                                                       : PrimitiveFate::drawn};
+            stream.primitives.own()[range.first_primitive + i] = {
+                triangles, static_cast<std::uint8_t>(degenerate ? 0 : 1),
+                degenerate ? PrimitiveFate::culled_degenerate : PrimitiveFate::drawn};
             triangles += degenerate ? 0U : 1U;
         }
     }

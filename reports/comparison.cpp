@@ -56,8 +56,8 @@ void check_memory(const ComparisonInput& input, const ComparisonRequest& request
 
 std::vector<float> picture_of(const pipeline::Frame& frame, const std::vector<float>& kbuffer,
                               const std::vector<float>& colour, const std::vector<float>& depth) {
-    if (!kbuffer.empty()) return pipeline::composite(frame, {kbuffer, colour, depth});
-    return colour.empty() ? colour : pipeline::mean_of_samples(frame.view, colour, 4);
+    if (frame.resolve != nullptr) return pipeline::composite(frame, {kbuffer, colour, depth});
+    return colour.size() == frame.view.places() * 4 ? pipeline::mean_of_samples(frame.view, colour, 4) : colour;
 }
 
 // What is shown of several samples is the first one's.
@@ -68,7 +68,7 @@ void keep_first_sample(std::vector<float>& surface, const pipeline::View& view) 
 
 void keep_first_sample(FramePixels& pixels, const pipeline::Frame& frame) {
     keep_first_sample(pixels.kbuffer, frame.view_of_kbuffer());
-    keep_first_sample(pixels.colour, frame.view);
+    if (pixels.colour.size() == frame.view.places() * 4) keep_first_sample(pixels.colour, frame.view);
     keep_first_sample(pixels.depth, frame.view);
 }
 

@@ -146,10 +146,13 @@ Table stages_table(const Comparison& comparison) {
     return table;
 }
 
-// Written down at once: there may be millions of rows.
-Table draws_table(const Comparison& comparison) {
-    Table table{"draws.csv", {"design", "draw", "name"}, {}, {}};
-    const std::size_t keys = table.header.size();
+namespace {
+
+// Rows of draws, written down at once: there may be millions of them. add(run, line) calls line(keys, counters).
+template <class Add>
+Table table_of_draws(std::string name, std::vector<std::string> keys, const Comparison& comparison, Add add) {
+    Table table{std::move(name), std::move(keys), {}, {}};
+    const auto first = static_cast<std::ptrdiff_t>(table.header.size());
     for (const RunResult& run : comparison.runs)
         for (const std::string& counter : run.draw_counters)
             if (std::find(table.header.begin(), table.header.end(), counter) == table.header.end())
@@ -159,18 +162,34 @@ Table draws_table(const Comparison& comparison) {
         std::vector<std::size_t> column;
         for (const std::string& counter : run.draw_counters)
             column.push_back(static_cast<std::size_t>(
-                std::find(table.header.begin() + static_cast<std::ptrdiff_t>(keys), table.header.end(), counter) -
-                table.header.begin()));
+                std::find(table.header.begin() + first, table.header.end(), counter) - table.header.begin()));
         std::fill(row.begin(), row.end(), "");
-        row[0] = run.design;
-        for (const pipeline::DrawResult& draw : run.draws) {
-            row[1] = text(std::uint64_t{draw.draw});
-            row[2] = draw.name;
-            for (std::size_t i = 0; i < draw.counters.size(); ++i) row[column[i]] = text(draw.counters[i]);
+        add(run, [&](std::initializer_list<std::string> key, const std::vector<std::uint64_t>& counters) {
+            std::copy(key.begin(), key.end(), row.begin());
+            for (std::size_t i = 0; i < counters.size(); ++i) row[column[i]] = text(counters[i]);
             table.lines += sim::csv_line(row);
-        }
+        });
     }
     return table;
+}
+
+} // namespace
+
+Table draws_table(const Comparison& comparison) {
+    return table_of_draws("draws.csv", {"design", "draw", "name"}, comparison, [](const RunResult& run, auto line) {
+        for (const pipeline::DrawResult& draw : run.draws)
+            line({run.design, text(std::uint64_t{draw.draw}), draw.name}, draw.counters);
+    });
+}
+
+Table pass_draws_table(const Comparison& comparison) {
+    return table_of_draws("pass_draws.csv", {"design", "pass", "pass name", "draw", "name"}, comparison,
+                          [](const RunResult& run, auto line) {
+                              for (const pipeline::PassDrawResult& draw : run.pass_draws)
+                                  line({run.design, text(std::uint64_t{draw.pass}), run.passes.at(draw.pass).name,
+                                        text(std::uint64_t{draw.draw}), run.draws.at(draw.draw).name},
+                                       draw.counters);
+                          });
 }
 
 Table passes_table(const Comparison& comparison) {
@@ -212,8 +231,9 @@ Table hazard_distance_table(const Comparison& comparison) {
 }
 
 std::vector<Table> all_tables(const Comparison& comparison) {
-    return {designs_table(comparison), stages_table(comparison),       draws_table(comparison),
-            passes_table(comparison),  hazard_pairs_table(comparison), hazard_distance_table(comparison)};
+    return {designs_table(comparison),        stages_table(comparison), draws_table(comparison),
+            pass_draws_table(comparison),     passes_table(comparison), hazard_pairs_table(comparison),
+            hazard_distance_table(comparison)};
 }
 
 } // namespace reports

@@ -23,6 +23,8 @@ Table designs_table(const Comparison& comparison);
 Table stages_table(const Comparison& comparison);
 /// One row per design and draw, over all passes; one column per counter that any draw has.
 Table draws_table(const Comparison& comparison);
+/// The same of each pass that a design executed, where it added anything; cycles of first and last quads are left out.
+Table pass_draws_table(const Comparison& comparison);
 /// One row per pass that a design executed.
 Table passes_table(const Comparison& comparison);
 /// One row per victim with the predecessor whose update it overwrote. Only the first pairs of a run are kept: `listed`

@@ -74,7 +74,7 @@ class PassGraph::Culling {
             // A pass that reads what it writes itself needs it: a depth test without depth writes is another test.
             if (live_.contains(name) || contains(node.reads, name))
                 writes.push_back(name);
-            else if (node.pass.rasterizes()) // else the pass that would write it is reported
+            else if (node.pass.writes_targets()) // else the pass that would write it is reported
                 note(fmt::format("{} of pass {}", name, node.pass.name), "nobody reads it");
         }
         node.writes = std::move(writes);
@@ -141,12 +141,12 @@ void PassGraph::add_surface(std::string name, pipeline::SurfaceFormat format, co
 }
 
 void PassGraph::add_shaded(ShadedPass added) {
-    CHECK(added.shader != nullptr && (!added.screen || added.draws.empty()));
+    CHECK(added.shader != nullptr && (!added.screen || added.draws.empty()) && (added.timed || added.screen));
     CHECK(added.kbuffer.empty() || frame_.program != nullptr);
     Node& node = nodes_.emplace_back();
     Pass& pass = node.pass;
     pass.name = std::move(added.name);
-    pass.kind = added.screen ? PassKind::screen : PassKind::draw;
+    pass.kind = !added.screen ? PassKind::draw : added.timed ? PassKind::screen : PassKind::compose;
     pass.shader = std::move(added.shader);
     pass.draws = std::move(added.draws);
     pass.both_faces = added.both_faces;
@@ -217,7 +217,7 @@ class PassGraph::Binding {
     Binding(const std::map<std::string, Surface>& declared, Frame& frame, std::span<const Node> nodes)
         : declared_(declared), frame_(frame) {
         for (std::size_t i = 0; i < nodes.size(); ++i)
-            if (frame.passes[i].rasterizes()) bind(frame.passes[i], nodes[i]);
+            if (frame.passes[i].writes_targets()) bind(frame.passes[i], nodes[i]);
         for (std::size_t i = 0; i < nodes.size(); ++i)
             if (frame.passes[i].kind == PassKind::clear)
                 for (const std::string& name : nodes[i].writes)
@@ -233,7 +233,8 @@ class PassGraph::Binding {
 
   private:
     void bind(Pass& pass, const Node& node) {
-        const pipeline::View& view = frame_.view_of(pass);
+        pipeline::View view = frame_.view_of(pass);
+        if (pass.kind == PassKind::compose) view.samples = 1; // one colour for each pixel
         if (pass.uses_depth()) pass.depth = id_of(node.depth, view);
         for (const std::string& target : node.targets)
             pass.targets.push_back(contains(node.writes, target) ? id_of(target, view) : pipeline::no_surface);

@@ -26,6 +26,7 @@ struct ShadedPass {
     std::vector<std::string> reads;   ///< in the order in which the shader knows them
     std::vector<std::string> targets; ///< one for each output of the shader; its last ones may go nowhere
     bool screen = false;              ///< draws every pixel of the targets instead of `draws`
+    bool timed = true;                ///< else it takes no time; passes over the screen only
     std::vector<std::uint32_t> draws;
     std::string depth;   ///< tested and written as the states say, with its stencil; none: ""
     std::string kbuffer; ///< runs the program on output 0; none: ""

@@ -84,7 +84,7 @@ Needs needs_of(const Frame& frame, const Offers& offers, FragmentColour colour) 
                              : pass.writes_colour() || (pass.runs_program() && frame.program->needs_colour());
         needs.depth |= pass.uses_depth();
         needs.early_depth |= pass.tests_depth() && !pass.writes_depth();
-        needs.colour_surface |= pass.writes_colour();
+        needs.colour_surface |= pass.rasterizes() && pass.writes_colour();
         needs.kbuffer |= pass.runs_program();
         needs.attributes |= pass.attributes;
     }

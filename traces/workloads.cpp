@@ -37,13 +37,44 @@ pipeline::Frame frame_of(const Scene& scene, const pipeline::View& view) {
     return frame;
 }
 
-pipeline::Frame kbuffer_frame(pipeline::Frame frame, pipeline::FragmentColour colour) {
+void add_picture(PassGraph& graph, const pipeline::Frame& frame, const models::MakePicture& picture,
+                 bool over_surface) {
+    graph.add_surface(picture_surface, pipeline::SurfaceFormat::rgba32f);
+    ShadedPass pass;
+    pass.name = "picture";
+    pass.shader = picture({frame.program, frame.view, glm::vec3(frame.background), over_surface});
+    pass.reads = {kbuffer_surface};
+    if (over_surface) pass.reads.emplace_back(colour_surface);
+    pass.targets = {picture_surface};
+    pass.screen = true;
+    pass.timed = false;
+    graph.add_shaded(std::move(pass));
+    graph.output(picture_surface);
+}
+
+namespace {
+
+PassGraph filled(const pipeline::Frame& frame, pipeline::FragmentColour colour) {
     std::vector<std::uint32_t> all(frame.draws.size());
     std::iota(all.begin(), all.end(), 0U);
-    PassGraph graph(std::move(frame));
+    PassGraph graph(frame);
     graph.use(colour);
     graph.add_clear("clear k-buffer", {kbuffer_surface});
     graph.add_draw("geometry", {}, {kbuffer_surface}, std::move(all), true);
+    return graph;
+}
+
+} // namespace
+
+pipeline::Frame kbuffer_frame(pipeline::Frame frame, const models::MakePicture& picture,
+                              pipeline::FragmentColour colour) {
+    PassGraph graph = filled(frame, colour);
+    add_picture(graph, frame, picture);
+    return graph.lower();
+}
+
+pipeline::Frame resolved_frame(pipeline::Frame frame) {
+    PassGraph graph = filled(frame, pipeline::FragmentColour::lit);
     graph.add_resolve("resolve", {kbuffer_surface}, {picture_surface});
     graph.output(picture_surface);
     return graph.lower();

@@ -1,63 +1,124 @@
 #include "models/programs/pictures.hpp"
 
 #include "models/programs/finite.hpp"
-#include "pipeline/frame.hpp"
+#include "pipeline/functional/eye_depth.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/glm.hpp>
+#include <vector>
 
 namespace models {
 
 namespace {
 
-using pipeline::Frame;
 using pipeline::ModifyProgram;
 
-class ColourPicture final : public pipeline::Resolve {
+/// A brightness for a window depth.
+class GreyRamp {
   public:
-    ColourPicture(const ColourSlots& slots, bool of_state) : slots_(slots), of_state_(of_state) {}
+    explicit GreyRamp(const glm::mat4& projection)
+        : depth_(projection), near_(depth_.distance(0.0F)), range_(std::log(depth_.distance(1.0F) / near_)) {
+        logarithmic_ = depth_.perspective() && near_ > 0.0 && range_ > 0.0;
+    }
 
-    std::vector<float> picture(const Frame& frame, const pipeline::FinishedSurfaces& surfaces) const override {
-        const auto [kbuffer, opaque_colour, depth] = surfaces;
-        const ModifyProgram& program = *frame.program;
-        const std::uint32_t floats = program.floats_per_pixel();
-        std::vector<float> picture(kbuffer.size() / floats * 4, 1.0F);
-        for (std::size_t i = 0; i < picture.size() / 4; ++i) {
-            const glm::vec4 seen = colour(program, kbuffer.data() + i * floats);
-            for (int channel = 0; channel < 3; ++channel) {
-                const std::size_t at = i * 4 + static_cast<std::size_t>(channel);
-                const float behind = opaque_colour.empty() ? frame.background[channel] : opaque_colour[at];
-                picture[at] = finite(seen[channel] + seen.a * behind);
-            }
-        }
-        return picture;
+    float operator()(float depth) const {
+        const double share = logarithmic_ ? std::log(depth_.distance(depth) / near_) / range_ : depth;
+        return static_cast<float>(0.9 - 0.8 * std::clamp(share, 0.0, 1.0));
     }
 
   private:
-    glm::vec4 at(const float* floats) const {
-        return {floats[slots_[0]], floats[slots_[1]], floats[slots_[2]], floats[slots_[3]]};
-    }
-
-    /// Premultiplied colour and transmittance of a pixel.
-    glm::vec4 colour(const ModifyProgram& program, const float* pixel) const {
-        if (of_state_) return at(pixel + std::size_t{program.k()} * program.floats_per_entry());
-        glm::vec4 seen(0.0F, 0.0F, 0.0F, 1.0F);
-        for (std::uint32_t i = 0; i < program.k(); ++i) {
-            const glm::vec4 node = at(pixel + std::size_t{i} * program.floats_per_entry());
-            seen = {glm::vec3(seen) + seen.a * glm::vec3(node), seen.a * node.a};
-        }
-        return seen;
-    }
-
-    ColourSlots slots_;
-    bool of_state_;
+    pipeline::EyeDepth depth_;
+    double near_, range_;
+    bool logarithmic_ = false;
 };
+
+class Compositor {
+  public:
+    Compositor(std::shared_ptr<const ModifyProgram> program, const glm::mat4& projection, float opacity)
+        : program_(std::move(program)),
+          opacity_(opacity),
+          ramp_(projection),
+          cleared_(program_->floats_per_pixel()),
+          floats_(program_->floats_per_entry()),
+          slot_(program_->depth_slot()) {
+        program_->clear(cleared_.data());
+    }
+
+    glm::vec3 operator()(const PicturePlace&, const float* pixel, const glm::vec3& behind) const {
+        glm::vec3 colour(0.0F);
+        float transmitted = 1.0F;
+        for (std::uint32_t i = 0; i < program_->k(); ++i) {
+            const float* entry = pixel + std::size_t{i} * floats_;
+            if (entry[slot_] == cleared_[std::size_t{i} * floats_ + slot_]) continue;
+            colour += transmitted * opacity_ * colour_of(entry);
+            transmitted *= 1.0F - opacity_;
+        }
+        return colour + transmitted * behind;
+    }
+
+  private:
+    glm::vec3 colour_of(const float* entry) const {
+        if (floats_ != 4) return glm::vec3(ramp_(entry[slot_]));
+        glm::vec3 colour;
+        int channel = 0;
+        for (std::uint32_t i = 0; i < 4; ++i)
+            if (i != slot_) colour[channel++] = entry[i];
+        return colour;
+    }
+
+    std::shared_ptr<const ModifyProgram> program_;
+    float opacity_;
+    GreyRamp ramp_;
+    std::vector<float> cleared_;
+    std::uint32_t floats_, slot_;
+};
+
+glm::vec4 colour_at(const float* floats, const ColourSlots& slots) {
+    return {floats[slots[0]], floats[slots[1]], floats[slots[2]], floats[slots[3]]};
+}
+
+/// A premultiplied colour, and what it lets through, before what lies behind.
+glm::vec3 before(const glm::vec4& seen, const glm::vec3& behind) {
+    glm::vec3 colour;
+    for (int channel = 0; channel < 3; ++channel) colour[channel] = finite(seen[channel] + seen.a * behind[channel]);
+    return colour;
+}
 
 } // namespace
 
-std::shared_ptr<const pipeline::Resolve> state_picture(const ColourSlots& slots) {
-    return std::make_shared<const ColourPicture>(slots, true);
+// A compare, and for the layer that is there two products and a sum; a product and a sum for what lies behind.
+MakePicture layers_picture(float opacity) {
+    return [opacity](const PictureSetup& setup) {
+        const std::uint32_t ramp = setup.program->floats_per_entry() == 4 ? 0 : 6; // of a logarithm
+        return picture_shader(setup, setup.program->k() * (4 + ramp) + 2,
+                              Compositor(setup.program, setup.view.projection, opacity));
+    };
 }
 
-std::shared_ptr<const pipeline::Resolve> node_picture(const ColourSlots& slots) {
-    return std::make_shared<const ColourPicture>(slots, false);
+MakePicture state_picture(const ColourSlots& slots) {
+    return [slots](const PictureSetup& setup) {
+        const std::size_t state = std::size_t{setup.program->k()} * setup.program->floats_per_entry();
+        return picture_shader(setup, 2,
+                              [slots, state](const PicturePlace&, const float* pixel, const glm::vec3& behind) {
+                                  return before(colour_at(pixel + state, slots), behind);
+                              });
+    };
+}
+
+MakePicture node_picture(const ColourSlots& slots) {
+    return [slots](const PictureSetup& setup) {
+        const std::uint32_t k = setup.program->k(), floats = setup.program->floats_per_entry();
+        return picture_shader(setup, 3 * k + 2,
+                              [slots, k, floats](const PicturePlace&, const float* pixel, const glm::vec3& behind) {
+                                  glm::vec4 seen(0.0F, 0.0F, 0.0F, 1.0F);
+                                  for (std::uint32_t i = 0; i < k; ++i) {
+                                      const glm::vec4 node = colour_at(pixel + std::size_t{i} * floats, slots);
+                                      seen = {glm::vec3(seen) + seen.a * glm::vec3(node), seen.a * node.a};
+                                  }
+                                  return before(seen, behind);
+                              });
+    };
 }
 
 } // namespace models

@@ -1,8 +1,7 @@
 // A program and how its pixels become the picture.
 #pragma once
 
-#include "pipeline/output/kbuffer.hpp"
-#include "pipeline/resolve.hpp"
+#include "models/programs/picture_shader.hpp"
 
 #include <memory>
 
@@ -10,7 +9,7 @@ namespace models {
 
 struct ProgramChoice {
     std::shared_ptr<const pipeline::ModifyProgram> program;
-    std::shared_ptr<const pipeline::Resolve> picture; ///< null: the entries are layers, composited front to back
+    MakePicture picture; ///< empty: the entries are layers, composited front to back
 };
 
 } // namespace models

@@ -49,7 +49,7 @@ class Coverage {
   private:
     void cover(std::uint32_t primitive) {
         plan_.cull_and_clip(instance_, read_(primitive), parts_);
-        Primitive& result = stream_.primitives[range_.first_primitive + primitive];
+        Primitive& result = stream_.primitives.own()[range_.first_primitive + primitive];
         result.first_triangle = static_cast<std::uint32_t>(output_.triangles.size());
         result.triangles = static_cast<std::uint8_t>(parts_.count);
         result.fate = parts_.fate;
@@ -122,23 +122,23 @@ void place(std::vector<CoveredPiece>& covered, FragmentStream& stream) {
         stream.fragments += piece.fragments;
         if (triangles > largest_count) throw sim::InputError("scene: expected at most 2^32 - 1 triangles in a pass");
     }
-    stream.triangles.resize(triangles);
-    stream.quads.resize(quads);
+    stream.triangles.own().resize(triangles);
+    stream.quads.own().resize(quads);
 }
 
 /// Moves a piece to its place in the stream.
 void store(const PlannedPiece& piece, CoveredPiece& covered, FragmentStream& stream) {
-    Triangle* triangle = stream.triangles.data() + covered.first_triangle;
+    Triangle* triangle = stream.triangles.own().data() + covered.first_triangle;
     for (Triangle source : covered.triangles) {
         source.first_quad += covered.first_quad;
         *triangle++ = source;
     }
-    Quad* quad = stream.quads.data() + covered.first_quad;
+    Quad* quad = stream.quads.own().data() + covered.first_quad;
     for (Quad source : covered.quads) {
         source.triangle += covered.first_triangle;
         *quad++ = source;
     }
-    Primitive* primitive = stream.primitives.data() + stream.draws[piece.of].first_primitive + piece.first;
+    Primitive* primitive = stream.primitives.own().data() + stream.draws[piece.of].first_primitive + piece.first;
     for (std::uint32_t i = 0; i < piece.count; ++i) primitive[i].first_triangle += covered.first_triangle;
     covered = CoveredPiece{};
 }
@@ -146,13 +146,13 @@ void store(const PlannedPiece& piece, CoveredPiece& covered, FragmentStream& str
 void count_quads_of_draws(const std::vector<PlannedPiece>& pieces, const std::vector<CoveredPiece>& covered,
                           FragmentStream& stream) {
     for (std::size_t i = 0; i < pieces.size(); ++i) {
-        DrawRange& range = stream.draws[pieces[i].of];
+        DrawRange& range = stream.draws.own()[pieces[i].of];
         if (pieces[i].first == 0) range.first_quad = covered[i].first_quad;
         range.quads += static_cast<std::uint32_t>(covered[i].quads.size());
     }
     // Instances without primitives have no piece.
     QuadId next = 0;
-    for (DrawRange& range : stream.draws) {
+    for (DrawRange& range : stream.draws.own()) {
         if (range.primitives == 0) range.first_quad = next;
         next = range.first_quad + range.quads;
     }

@@ -22,6 +22,37 @@ std::vector<std::uint32_t> states_of_parts(const Pass& pass) {
     return states;
 }
 
+/// Without what the fixed functions behind the shader do with a fragment.
+std::vector<RasterState> until_shading(std::vector<RasterState> states) {
+    for (RasterState& state : states) {
+        const DepthState depth = state.depth;
+        state.blend = {};
+        state.write_mask = {};
+        state.stencil = {};
+        state.depth = {};
+        state.depth.clamp = depth.clamp;
+        state.depth.bias_slope = depth.bias_slope;
+        state.depth.bias_constant = depth.bias_constant;
+    }
+    return states;
+}
+
+SurfaceFormat depth_format(const Frame& frame, const Pass& pass) {
+    return pass.depth == no_surface ? frame.depth_format : frame.surfaces.at(pass.depth).format;
+}
+
+/// Fragments are the same, and so is what the shader of the pass is given; both have one.
+bool draw_alike(const Frame& frame, const Pass& a, const Pass& b) {
+    const Needs of_a = frame.needs_of(a), of_b = frame.needs_of(b);
+    return a.kind == PassKind::draw && b.kind == PassKind::draw && a.shader != nullptr && b.shader != nullptr &&
+           a.view == b.view && a.draws == b.draws && a.parts.empty() && b.parts.empty() &&
+           a.both_faces == b.both_faces && a.state_of_draw == b.state_of_draw && of_a.colours == of_b.colours &&
+           of_a.fragment_normals == of_b.fragment_normals && of_a.fragment_colour == of_b.fragment_colour &&
+           of_a.textures == of_b.textures && of_a.alpha_test == of_b.alpha_test &&
+           depth_step(depth_format(frame, a)) == depth_step(depth_format(frame, b)) &&
+           until_shading(a.states) == until_shading(b.states);
+}
+
 FragmentStream rasterize_pass(const Frame& frame, const Pass& pass, FrontEndOptions options) {
     const Needs needs = frame.needs_of(pass);
     options.colours = needs.colours;
@@ -30,8 +61,7 @@ FragmentStream rasterize_pass(const Frame& frame, const Pass& pass, FrontEndOpti
     options.textures = needs.textures;
     options.alpha_test = needs.alpha_test;
     options.both_faces = pass.both_faces;
-    options.depth_step =
-        depth_step(pass.depth == no_surface ? frame.depth_format : frame.surfaces.at(pass.depth).format);
+    options.depth_step = depth_step(depth_format(frame, pass));
     options.states = pass.states;
     const std::vector<std::uint32_t> of_parts = states_of_parts(pass);
     options.state_of_draw = pass.parts.empty() ? pass.state_of_draw : of_parts;
@@ -51,13 +81,22 @@ FragmentStream cover_screen(const Frame& frame, const Pass& pass) {
 
 std::vector<FragmentStream> rasterize_frame(const Frame& frame, const FrontEndOptions& options) {
     std::vector<FragmentStream> streams;
+    std::vector<std::pair<const Pass*, FragmentStream>> unshaded; // what the shaders of passes are given
     for (const Pass& pass : frame.passes) {
         if (!pass.rasterizes()) continue;
-        FragmentStream& stream = streams.emplace_back(
-            pass.kind == PassKind::screen ? cover_screen(frame, pass) : rasterize_pass(frame, pass, options));
-        if (pass.shader == nullptr) continue;
-        stream.given_colours = std::exchange(stream.colours, {});
-        if (!pass.reads_surfaces()) shade(pass, stream, {}, options.threads);
+        if (pass.kind == PassKind::screen || pass.shader == nullptr) {
+            streams.push_back(pass.shader == nullptr ? rasterize_pass(frame, pass, options)
+                                                     : cover_screen(frame, pass));
+        } else {
+            auto alike = std::find_if(unshaded.begin(), unshaded.end(),
+                                      [&](const auto& before) { return draw_alike(frame, *before.first, pass); });
+            if (alike == unshaded.end()) {
+                alike = unshaded.emplace(unshaded.end(), &pass, rasterize_pass(frame, pass, options));
+                alike->second.given_colours = std::exchange(alike->second.colours, {});
+            }
+            streams.push_back(alike->second);
+        }
+        if (pass.shader != nullptr && !pass.reads_surfaces()) shade(pass, streams.back(), {}, options.threads);
     }
     return streams;
 }

@@ -186,8 +186,8 @@ class Planner {
     }
 
     void finish() {
-        stream_.draws.shrink_to_fit();
-        stream_.primitives.resize(primitives_);
+        stream_.draws.own().shrink_to_fit();
+        stream_.primitives.own().resize(primitives_);
         std::uint64_t vertices = 0, distances = 0;
         for (PlannedVertices& run : plan_.runs) {
             const std::uint32_t count = run.used.end - run.used.first;
@@ -229,7 +229,7 @@ class Planner {
                 fmt::format("draw {} \"{}\": expected at most 2^32 - 1 primitives in a pass", range.draw, draw.name));
         range.first_primitive = static_cast<std::uint32_t>(primitives_);
         primitives_ += range.primitives;
-        stream_.draws.push_back(range);
+        stream_.draws.own().push_back(range);
     }
 
     FrontEndPlan& plan_;

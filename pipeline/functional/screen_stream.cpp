@@ -18,7 +18,7 @@ void add_tile(FragmentStream& stream, std::uint32_t left, std::uint32_t top) {
             const unsigned row = x + 1 < stream.width ? 3U : 1U;
             quad.covered = static_cast<std::uint8_t>(y + 1 < stream.height ? row | row << 2U : row);
             quad.alive = quad.covered;
-            stream.quads.push_back(quad);
+            stream.quads.own().push_back(quad);
         }
 }
 
@@ -32,7 +32,7 @@ FragmentStream screen_stream(std::uint32_t width, std::uint32_t height, std::uin
     for (std::uint32_t top = 0; top < height; top += raster_tile)
         for (std::uint32_t left = 0; left < width; left += raster_tile, ++tiles) add_tile(stream, left, top);
     const auto quads = static_cast<std::uint32_t>(stream.quads.size());
-    stream.depths.resize(quads);
+    stream.depths.own().resize(quads);
     stream.fragments = std::uint64_t{width} * height;
     stream.triangles = {{.draw = draw, .primitive = 0, .first_quad = 0, .quads = quads, .tiles = tiles}};
     stream.primitives = {{.first_triangle = 0, .triangles = 1}};

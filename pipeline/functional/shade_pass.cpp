@@ -20,7 +20,11 @@ constexpr std::size_t quads_of_piece = 4096;
 class GroupShading {
   public:
     GroupShading(const Pass& pass, FragmentStream& stream, const SurfaceStore& surfaces, std::uint32_t outputs)
-        : shader_(*pass.shader), stream_(stream), access_(surfaces, pass.reads), outputs_(outputs) {}
+        : shader_(*pass.shader),
+          stream_(stream),
+          quads_(stream.quads.own()),
+          access_(surfaces, pass.reads),
+          outputs_(outputs) {}
 
     /// Returns how many fragments were discarded.
     std::uint64_t run(std::size_t begin, std::size_t end) {
@@ -43,7 +47,7 @@ class GroupShading {
         std::uint64_t discarded = 0;
         for (std::size_t quad = first; quad < after; ++quad) {
             const unsigned before = stream_.quads[quad].alive;
-            stream_.quads[quad].alive = static_cast<std::uint8_t>(before & output.alive);
+            quads_[quad].alive = static_cast<std::uint8_t>(before & output.alive);
             discarded += pixels_in(before & ~output.alive);
             for (std::uint32_t number = 0; number < outputs_; ++number)
                 (number == 0 ? stream_.colours : stream_.more_outputs[number - 1])[quad] = output.colours[number];
@@ -53,6 +57,7 @@ class GroupShading {
 
     const Shader& shader_;
     FragmentStream& stream_;
+    std::vector<Quad>& quads_; ///< its own
     SurfaceAccess access_;
     std::uint32_t outputs_;
 };
@@ -83,6 +88,7 @@ void shade(const Pass& pass, FragmentStream& stream, const SurfaceStore& surface
     CHECK_MSG(pass.reads.size() == shape.reads, fmt::format("pass {}: {} surfaces to read, and its shader knows {}",
                                                             pass.name, pass.reads.size(), shape.reads));
     const std::size_t quads = stream.quads.size();
+    stream.quads.own(); // before several threads ask for them
     stream.colours.resize(quads);
     stream.more_outputs.resize(shape.outputs - 1);
     for (auto& output : stream.more_outputs) output.resize(quads);

@@ -67,7 +67,7 @@ class Shading {
         for (std::size_t i = begin; i < end;) {
             const std::uint32_t triangle = stream_.quads[i].triangle;
             if (i == begin || triangle != current_triangle_) enter_triangle(triangle);
-            const std::span<Quad> group(stream_.quads.data() + i, stream_.quads[i].more + std::size_t{1});
+            const std::span<Quad> group(stream_.quads.own().data() + i, stream_.quads[i].more + std::size_t{1});
             shade(i, group);
             for (const Quad& quad : group) discarded += pixels_in(static_cast<unsigned>(quad.covered ^ quad.alive));
             i += group.size();
@@ -132,7 +132,7 @@ class Shading {
         unsigned covered = 0;
         for (std::size_t n = 0; n < group.size(); ++n) {
             Quad& quad = group[n];
-            stream_.depths[first + n] = depths(x, y, quad.sample);
+            stream_.depths.own()[first + n] = depths(x, y, quad.sample);
             quad.alive = quad.covered;
             covered |= quad.covered;
         }
@@ -141,8 +141,8 @@ class Shading {
         for (std::size_t n = 0; n < group.size(); ++n) {
             group[n].alive &= output.alive;
             if (!stream_.colours.empty()) stream_.colours[first + n] = output.colours;
-            if (!stream_.given_normals.empty()) stream_.given_normals[first + n] = output.normals;
-            if (!stream_.texture_lines.empty()) stream_.texture_lines[first + n] = output.texture_line;
+            if (!stream_.given_normals.empty()) stream_.given_normals.own()[first + n] = output.normals;
+            if (!stream_.texture_lines.empty()) stream_.texture_lines.own()[first + n] = output.texture_line;
         }
     }
 
@@ -180,10 +180,10 @@ class Shading {
 
 void shading_pass(FrontEndPlan& plan, FragmentStream& stream) {
     const std::size_t quads = stream.quads.size();
-    stream.depths.resize(quads);
+    stream.depths.own().resize(quads);
     if (plan.options.colours) stream.colours.resize(quads);
-    if (plan.options.normals) stream.given_normals.resize(quads);
-    if (textures_are_read(plan)) stream.texture_lines.resize(quads, ~0U);
+    if (plan.options.normals) stream.given_normals.own().resize(quads);
+    if (textures_are_read(plan)) stream.texture_lines.own().resize(quads, ~0U);
 
     const std::size_t pieces = (quads + quads_per_piece - 1) / quads_per_piece;
     plan.progress.begin_pass(pieces, 1.0);

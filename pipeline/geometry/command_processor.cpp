@@ -1,6 +1,7 @@
 #include "pipeline/geometry/command_processor.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace pipeline {
 
@@ -12,9 +13,10 @@ CommandProcessor::CommandProcessor(sim::Context context, const Params& params, c
                                    double frame_us)
     : Component(std::move(context)), params_(params), frame_us_(frame_us), pass_(&pass) {}
 
-void CommandProcessor::start() {
+void CommandProcessor::start(bool switches) {
     CHECK_MSG(activity() == sim::Activity::idle && !starting_, name());
     starting_ = true;
+    switches_ = switches;
     start_ = clock().time_of(clock().cycle_at(now() + 1));
     simulation().wake(*this, start_);
 }
@@ -39,6 +41,10 @@ bool CommandProcessor::take() {
         }
         stats_.cpu_wait_cycles += submitted - std::min(submitted, free_);
         cost = params_.draw_gpu_cycles;
+        if (std::exchange(switches_, false)) {
+            cost += params_.target_switch_cycles;
+            ++stats_.target_switches;
+        }
         cpu_us_ += params_.draw_cpu_us;
         converted_ = false;
         ++stats_.draws;

@@ -105,16 +105,16 @@ void GeometryFront::attach(MemorySystem& memory) {
     memory.attach(vertex_fetch_.requests_out, vertex_fetch_.responses_in);
 }
 
-void GeometryFront::start(const FragmentStream& stream, std::span<const Draw> draws) {
-    start(stream, draws, stream.draws);
+void GeometryFront::start(const FragmentStream& stream, std::span<const Draw> draws, bool switches) {
+    start(stream, draws, stream.draws, switches);
 }
 
-void GeometryFront::start(const FragmentStream& stream, std::span<const Draw> draws,
-                          std::span<const DrawRange> ranges) {
+void GeometryFront::start(const FragmentStream& stream, std::span<const Draw> draws, std::span<const DrawRange> ranges,
+                          bool switches) {
     CHECK(draws.size() == terms_.size()); // ranges count the draws of the frame
     range_terms_ = range_terms(host_, *frame_, ranges);
     pass_ = {pass_.number + 1, &stream, frame_->resources.get(), draws, ranges, terms_, range_terms_};
-    command_processor_.start();
+    command_processor_.start(switches);
 }
 
 GeometryStats GeometryFront::stats() const {

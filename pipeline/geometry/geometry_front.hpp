@@ -122,8 +122,10 @@ class GeometryFront {
     /// Begins a pass at the next clock edge; then call Simulation::run(). `draws` is the list that DrawRange::draw
     /// counts (and to which memory traffic is booked); `ranges`, some of stream.draws in order, or all of them, is what
     /// to draw. Everything must stay unchanged until the run ends.
-    void start(const FragmentStream& stream, std::span<const Draw> draws);
-    void start(const FragmentStream& stream, std::span<const Draw> draws, std::span<const DrawRange> ranges);
+    /// With `switches` the pass has other render targets than the one before.
+    void start(const FragmentStream& stream, std::span<const Draw> draws, bool switches = false);
+    void start(const FragmentStream& stream, std::span<const Draw> draws, std::span<const DrawRange> ranges,
+               bool switches = false);
 
     bool has_index_fetch() const { return index_fetch_ != nullptr; }
     const std::vector<DrawTerms>& terms() const { return terms_; } ///< by draw of the frame

@@ -242,7 +242,7 @@ void add_isosurfaces(std::vector<Case>& cases) {
 /// Rays of a view of 1x1 pixels, whose ray is the axis.
 double transmittance(double sigma, double from, double to, bool fresnel, float cosine) {
     const pipeline::View view = perspective_view(1, 1, 60, 0.1, 1000);
-    const traces::TranslucencyPicture picture({sigma}, fresnel);
+    const traces::Translucency picture({sigma}, fresnel);
     const std::array<traces::TranslucentSurface, 2> surfaces{{{from, 0, cosine}, {to, 0, cosine}}};
     return picture.passage(surfaces, traces::ViewRays(view), 0, 0).transmittance;
 }
@@ -280,7 +280,7 @@ void add_translucency(std::vector<Case>& cases) {
         {"fields.exit-missing", Side::whole,
          "translucency: a surface without a partner, as an open mesh or too few entries leave it",
          "it begins no length: all light", "absolute", 0.0, [](Finding& finding) {
-             const traces::TranslucencyPicture picture({5.0, 5.0}, false);
+             const traces::Translucency picture({5.0, 5.0}, false);
              const std::array<traces::TranslucentSurface, 3> surfaces{{{1.0, 0, 1}, {1.5, 1, 1}, {2.0, 0, 1}}};
              const auto passage =
                  picture.passage(surfaces, traces::ViewRays(perspective_view(1, 1, 60, 0.1, 1000)), 0, 0);

@@ -13,7 +13,7 @@ namespace {
 Curve absorption() {
     const auto transmittance = [](double depth) {
         const std::array<traces::TranslucentSurface, 2> surfaces{{{1.0, 0, 1.0F}, {2.0, 0, 1.0F}}};
-        return traces::TranslucencyPicture({depth}, false)
+        return traces::Translucency({depth}, false)
             .passage(surfaces, traces::ViewRays(perspective_view(1, 1, 60, 0.1, 100.0)), 0, 0)
             .transmittance;
     };

@@ -101,7 +101,7 @@ template <class Line>
 void textured(tests::QuadPass& pass, std::uint32_t count, Line&& line) {
     pass.quads(count);
     pass.context.textures = true;
-    for (std::uint32_t i = 0; i < count; ++i) pass.stream.texture_lines.push_back(line(i));
+    for (std::uint32_t i = 0; i < count; ++i) pass.stream.texture_lines.own().push_back(line(i));
 }
 
 // Received at 1, asked for in the same cycle, 200 cycles inside the memory, a cycle on each link; then filtered and
@@ -219,7 +219,7 @@ TEST(FragmentPipeline, ExactPeelTakesWhatIsBehindTheLayerAndTiesByOrder) {
     pass.quad(0, 0, 15, 0.5F); // came after it
     pass.quad(0, 0, 15, 0.75F);
     pass.quad(0, 0, 15);
-    pass.stream.depths[4] = {0.4F, 0.6F, 0.5F, 0.1F};
+    pass.stream.depths.own()[4] = {0.4F, 0.6F, 0.5F, 0.1F};
     PipeBench bench(pass);
     bench.run();
     EXPECT_EQ(masks(bench), (std::vector<std::uint32_t>{0, 0, 15, 15, 0b0110}));
@@ -313,7 +313,7 @@ TEST(FragmentPipeline, PHY_P6_StepsWaitForTheirLoadsAndNotForTheirStores) {
 TEST(FragmentPipeline, SameInAllModes) {
     tests::QuadPass pass;
     textured(pass, 300, [](std::uint32_t i) { return i * i % 37; });
-    for (std::uint32_t i = 0; i < 300; i += 11) pass.stream.texture_lines[i] = ~0U;
+    for (std::uint32_t i = 0; i < 300; i += 11) pass.stream.texture_lines.own()[i] = ~0U;
     pass.context.shader_costs[0].alu = 3;
     tests::expect_same_in_all_modes([&](std::uint64_t, sim::Mode mode, std::uint64_t shuffle) {
         PipeBench bench(pass, {.fragment = {.quads_in_flight = 32},

@@ -287,7 +287,7 @@ TEST(GeometryFront, SomeRangesCanBeDrawnAlone) {
 
 TEST(GeometryFront, EmptyPassEndsAtOnce) {
     GeometryScene scene = tests::make_scene(tests::grid_mesh(2, 2));
-    scene.stream.draws.clear();
+    scene.stream.draws.own().clear();
     Front run(scene);
     run.pass();
     EXPECT_EQ(run.sink.size(), 0U);

@@ -51,6 +51,23 @@ TEST(CommandProcessor, DrawLeavesAfterItsGpuCost) {
     EXPECT_EQ(draw_cycles({one_triangle()}, {.draw_cpu_us = 0, .draw_gpu_cycles = 200}), Cycles{1 + 200 + 1});
 }
 
+TEST(CommandProcessor, OtherTargetsCostTheFirstDrawOfAPass) {
+    const tests::GeometryScene scene = tests::make_scene({one_triangle(), one_triangle()});
+    const GeometryPass pass = pass_of(scene);
+    for (const bool switches : {false, true}) {
+        Rig rig;
+        CommandProcessor processor(rig.context("processor"),
+                                   {.draw_cpu_us = 0, .draw_gpu_cycles = 200, .target_switch_cycles = 1000}, pass);
+        Sink<DrawCommand> sink(rig.context("sink"), {});
+        sim::connect(processor.draws_out, sink.in, {});
+        processor.start(switches);
+        rig.simulation.run();
+        const sim::Cycle first = 1 + 200 + (switches ? 1000 : 0) + 1;
+        EXPECT_EQ(sink.cycles(), (Cycles{first, first + 201}));
+        EXPECT_EQ(processor.stats().target_switches, switches ? 1U : 0U);
+    }
+}
+
 TEST(CommandProcessor, GpuBoundDrawsAreOneCostApart) {
     const std::vector<tests::SceneDraw> draws(5, one_triangle());
     const Cycles cycles = draw_cycles(draws, {.draw_cpu_us = 0, .draw_gpu_cycles = 200});

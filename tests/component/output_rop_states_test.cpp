@@ -30,7 +30,7 @@ struct StatePass : tests::QuadPass {
     }
     void quad_of(std::uint32_t draw, const glm::vec4& colour, bool front = true, float depth = 0.5F) {
         triangle(draw);
-        stream.triangles.back().front = front;
+        stream.triangles.own().back().front = front;
         quad(0, 0, 15, depth);
         stream.colours.back().fill(colour);
     }

@@ -70,7 +70,7 @@ TEST(EarlyDepthTest, RejectsWhatIsNotNearerThanTheSurface) {
     pass.quad(2, 0, 15, 0.5F); // equal depth is not less
     pass.quad(4, 0, 15, 0.75F);
     pass.quad(6, 0, 15);
-    pass.stream.depths[3] = {0.25F, 0.75F, 0.5F, 0.4F};
+    pass.stream.depths.own()[3] = {0.25F, 0.75F, 0.5F, 0.4F};
     const Bench bench(pass, {});
     ASSERT_EQ(bench.sink.size(), 2U);
     EXPECT_EQ(bench.sink.values()[0].mask, 15);
@@ -85,7 +85,7 @@ TEST(EarlyDepthTest, ComparesAsTheDrawSays) {
     for (const pipeline::Compare compare : {pipeline::Compare::greater_equal, pipeline::Compare::not_equal}) {
         TestedPass pass(compare);
         pass.quad(0, 0, 15);
-        pass.stream.depths[0] = {0.25F, 0.75F, 0.5F, 0.4F};
+        pass.stream.depths.own()[0] = {0.25F, 0.75F, 0.5F, 0.4F};
         const Bench bench(pass, {});
         EXPECT_EQ(bench.sink.values().at(0).mask, compare == pipeline::Compare::not_equal ? 0b1011U : 0b0110U);
     }

@@ -110,7 +110,7 @@ TEST(Rasterizer, StalledSinkBlocksItAndNothingIsLost) {
 TEST(Rasterizer, DiscardedPixelsAreNotAliveButCountAsCovered) {
     tests::QuadPass pass;
     pass.quad(0, 0, 15);
-    pass.stream.quads[0].alive = 5;
+    pass.stream.quads.own()[0].alive = 5;
     const Bench bench(pass, {});
     EXPECT_EQ(bench.sink.values().at(0).mask, 5);
     EXPECT_EQ(bench.rasterizer.stats().fragments, 4U);
@@ -121,7 +121,7 @@ TEST(Rasterizer, SameInAllModes) {
     for (std::uint32_t i = 0; i < 40; ++i) {
         pass.triangle(0, i % 3 == 0 ? 1 : 0);
         for (std::uint32_t n = 0; n < i % 7; ++n) pass.quad((i + n) % 32 * 2, 0);
-        if (i % 7 == 0 && i % 3 != 0) pass.stream.triangles.back().tiles = 1;
+        if (i % 7 == 0 && i % 3 != 0) pass.stream.triangles.own().back().tiles = 1;
     }
     tests::expect_same_in_all_modes([&](std::uint64_t, sim::Mode mode, std::uint64_t shuffle) {
         const Bench bench(pass, {.quads_per_clk = 3, .tiles_per_clk = 2}, {.every = 3}, 4, mode, shuffle);

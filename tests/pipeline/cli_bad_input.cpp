@@ -128,7 +128,7 @@ INSTANTIATE_TEST_SUITE_P(
     Deferred, CliBadInput,
     ::testing::Values(
         Mistake{deferred_with("--set", "workload.method=pn"), 1,
-                "workload deferred: method: expected one of pm | dp | fwd | fw, got \"pn\"; did you mean 'pm'?"},
+                "workload deferred: method: expected one of pm | dp | fwd | fw | kg, got \"pn\"; did you mean 'pm'?"},
         Mistake{deferred_with("--set", "workload.lights=-1"), 1, "lights: expected whole number 0 to 64, got -1"},
         Mistake{deferred_with("--set", "workload.lights=65"), 1, "lights: expected whole number 0 to 64, got 65"},
         Mistake{deferred_with("--set", "workload.lights=many"), 1,

@@ -114,7 +114,7 @@ TEST(EqualReference, K3_ForEqualDepthsOfDifferentColours) {
     // Whoever comes first stays, in every design: an opaque order would show at once.
     const Replay replay("gen:stack?n=20&x=0&y=0&w=32&h=32", {.width = 32, .height = 32});
     Replay equal = replay;
-    for (auto& depths : equal.streams[0].depths) depths.fill(0.5F);
+    for (auto& depths : equal.streams[0].depths.own()) depths.fill(0.5F);
     equal.reference = pipeline::run_reference(equal.frame, equal.streams);
     EXPECT_NE(equal.reference.kbuffer, replay.reference.kbuffer);
     for (const std::string& design : protected_designs_of(replay)) {

@@ -150,7 +150,7 @@ TEST(DualPeel, TakesHalfThePassesAndHoldsTwoLayersEach) {
 
 TEST(DualPeel, KeepsEqualDepthsInTheOrderOfTheReference) {
     Replay replay("gen:stack?n=6&x=0&y=0&w=16&h=16", {16, 16, "transparency", "auto", {"k=8"}});
-    for (auto& depths : replay.streams[0].depths) depths.fill(0.5F);
+    for (auto& depths : replay.streams[0].depths.own()) depths.fill(0.5F);
     replay.reference = pipeline::run_reference(replay.frame, replay.streams);
     EXPECT_EQ(replay.run("dual-peel").wrong_pixels, 0U);
 }

@@ -24,7 +24,7 @@ double accepted_share(const RunResult& run) {
 /// Every fragment of the stack at one depth, in a colour of its own.
 Replay all_at_one_depth() {
     Replay replay("gen:stack?n=20&x=0&y=0&w=32&h=32", {.width = 32, .height = 32});
-    for (auto& depths : replay.streams[0].depths) depths.fill(0.5F);
+    for (auto& depths : replay.streams[0].depths.own()) depths.fill(0.5F);
     replay.reference = pipeline::run_reference(replay.frame, replay.streams);
     return replay;
 }
@@ -74,7 +74,7 @@ TEST(PeelRop, K10_AcceptsWhatTheClosedFormSays) {
     Replay shuffled = replay;
     sim::Random random(7, "depths");
     for (int i = 0; i < runs; ++i) {
-        for (auto& depths : shuffled.streams[0].depths) depths.fill(static_cast<float>(random.uniform()));
+        for (auto& depths : shuffled.streams[0].depths.own()) depths.fill(static_cast<float>(random.uniform()));
         shuffled.reference = pipeline::run_reference(shuffled.frame, shuffled.streams);
         accepted += static_cast<double>(shuffled.reference.accepted_insertions);
         if (i >= 20) continue; // the machine accepts what the reference does

@@ -1,6 +1,7 @@
 // K3 on all further scenes: every design that protects the pixel, every program that it runs.
 // Source: specification 004, check K3.
 #include "models/programs/library.hpp"
+#include "models/programs/pictures.hpp"
 #include "tests/support/paths.hpp"
 #include "tests/support/replay.hpp"
 
@@ -81,6 +82,17 @@ std::vector<std::pair<std::string, models::ProgramChoice>> all_programs() {
     return all;
 }
 
+/// The frame with another program in its k-buffer, and its picture.
+void use(pipeline::Frame& frame, const models::ProgramChoice& choice) {
+    frame.program = choice.program;
+    for (pipeline::SurfaceInfo& surface : frame.surfaces)
+        if (surface.program != nullptr) surface.program = choice.program;
+    const models::MakePicture picture = choice.picture ? choice.picture : models::layers_picture(frame.opacity);
+    for (pipeline::Pass& pass : frame.passes)
+        if (pass.kind == pipeline::PassKind::compose)
+            pass.shader = picture({frame.program, frame.view, glm::vec3(frame.background), pass.reads.size() == 2});
+}
+
 TEST(EqualReference, K3_LongEveryProtectedDesignProgramAndSharedScene) {
     const auto files = scene_files(false);
     if (files.empty()) GTEST_SKIP() << "no further scenes here: set ROPSIM_SHARED_DIR";
@@ -90,8 +102,7 @@ TEST(EqualReference, K3_LongEveryProtectedDesignProgramAndSharedScene) {
     for (const std::string& file : files) {
         Replay replay(load(file), {.width = size, .height = size});
         for (const auto& [name, choice] : programs) {
-            replay.frame.program = choice.program;
-            replay.frame.resolve = choice.picture;
+            use(replay.frame, choice);
             replay.reference = pipeline::run_reference(replay.frame, replay.streams);
             expect_reference(replay, name + " in " + file);
         }

@@ -63,7 +63,7 @@ TEST(GeometryFeed, G2VerticesPerSecondAreConstantBelowTheCliff) {
     EXPECT_LE(most / least, 1.03);
 }
 
-TEST(GeometryFeed, G3DrawsAboveAMillionVerticesAreSlowWhenIndexed) {
+TEST(GeometryFeedLong, G3DrawsAboveAMillionVerticesAreSlowWhenIndexed) {
     const auto rate = [](std::uint32_t blades, std::uint32_t per_draw, const std::vector<std::string>& prepare) {
         // Without indices vertices are twice as many; with normals they would not fit into memory.
         const std::string attributes = prepare.empty() ? "normal:3f32" : "none";
@@ -172,7 +172,7 @@ TEST(GeometryFeedLong, G6ShortPositionsOfTenMillionTriangles) {
     EXPECT_LE(ratio, 1.08);
 }
 
-TEST(GeometryFeed, G7AttributesOfT34InTheirOrder) {
+TEST(GeometryFeedLong, G7AttributesOfT34InTheirOrder) {
     const auto rows = table_of("T3.4", "g70");
     const auto model = [&rows](const char* row) { return rows.at(row).model; };
     const std::vector<const char*> order{"none",      "3ub colour", "4ub colour", "3s normal",
@@ -200,7 +200,7 @@ TEST(GeometryFeed, G9TimeDoesNotDependOnTheViewport) {
     EXPECT_NEAR(cycles(1024) / cycles(256), 1.0, 0.02);
 }
 
-TEST(GeometryFeed, EstimateIsNearDetailed) {
+TEST(GeometryFeedLong, EstimateIsNearDetailed) {
     for (const char* scene : {"gen:grass?blades=30000", "gen:blob?triangles=200000&order=voxels",
                               "gen:blob?triangles=200000&order=random", "gen:grid-soup?boxes=3000"}) {
         const auto frame = frame_of(scene).frame;

@@ -1,6 +1,5 @@
 // Constructive solid geometry of a sphere and a cube against what a ray meets of them (specification 004, A13, 10.4).
 #include "models/kbuffers/library.hpp"
-#include "pipeline/functional/composite.hpp"
 #include "tests/support/box_ray.hpp"
 #include "tests/support/replay.hpp"
 #include "traces/workloads/csg_surface.hpp"

@@ -59,6 +59,20 @@ TEST(Deferred, S003_D1_PassesOfAFrame) {
     }
 }
 
+// G-buffer, twice for each light, picture: specification 003, section 6.2.
+TEST(Deferred, RenderTargetsAreSwitched) {
+    const std::vector<std::pair<const char*, std::uint64_t>> switches{
+        {"method=pm", 2 * 3 + 2}, {"method=dp", 3 * 3 + 3}, {"method=fw", 2 * 3 + 2}};
+    for (const auto& [method, expected] : switches) {
+        const Replay replay = deferred({"lights=3", method});
+        const pipeline::RunResult run = replay.run("existing"),
+                                  slow = replay.run("existing",
+                                                    {"geometry.command_processor.target_switch_cycles=100000"});
+        EXPECT_EQ(support::counter(run.stages, "command_processor/counters/target_switches"), expected) << method;
+        EXPECT_GT(slow.cycles, run.cycles + (expected - 1) * 100000U);
+    }
+}
+
 TEST(Deferred, S003_D2_RenderTargets) {
     const auto targets = [](const Settings& settings) {
         std::pair<std::uint32_t, double> sum{0, 0.0}; // number, MB

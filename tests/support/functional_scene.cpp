@@ -23,9 +23,9 @@ void add_attribute(pipeline::Resources& resources, pipeline::Geometry& geometry,
     resources.buffers.push_back(buffer_of(elements));
 }
 
-template <class Element>
-bool same_bytes(const std::vector<Element>& a, const std::vector<Element>& b) {
-    return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(Element)) == 0);
+template <class Vector>
+bool same_bytes(const Vector& a, const Vector& b) {
+    return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(a[0])) == 0);
 }
 
 } // namespace

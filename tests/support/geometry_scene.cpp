@@ -59,8 +59,8 @@ void add_ranges(pipeline::FragmentStream& stream, std::uint32_t draw, std::uint3
                 std::uint32_t primitives) {
     for (std::uint32_t instance = 0; instance < instances; ++instance) {
         const auto first = static_cast<std::uint32_t>(stream.primitives.size());
-        stream.draws.push_back({draw, instance, first, primitives, 0, 0});
-        stream.primitives.resize(first + primitives, pipeline::Primitive{.triangles = 1});
+        stream.draws.own().push_back({draw, instance, first, primitives, 0, 0});
+        stream.primitives.own().resize(first + primitives, pipeline::Primitive{.triangles = 1});
     }
 }
 
@@ -150,17 +150,17 @@ GeometryScene make_scene(const IndexedMesh& mesh) {
 
 void set_fate(GeometryScene& scene, std::uint32_t index, pipeline::PrimitiveFate fate, std::uint8_t parts,
               bool clipped) {
-    scene.stream.primitives[index] = {0, parts, fate, clipped};
+    scene.stream.primitives.own()[index] = {0, parts, fate, clipped};
 }
 
 void rebuild(GeometryScene& scene) {
-    scene.stream.triangles.clear();
+    scene.stream.triangles.own().clear();
     for (const pipeline::DrawRange& range : scene.stream.draws)
         for (std::uint32_t i = range.first_primitive; i < range.first_primitive + range.primitives; ++i) {
-            pipeline::Primitive& primitive = scene.stream.primitives[i];
+            pipeline::Primitive& primitive = scene.stream.primitives.own()[i];
             primitive.first_triangle = static_cast<std::uint32_t>(scene.stream.triangles.size());
             for (std::uint32_t part = 0; part < primitive.triangles; ++part)
-                scene.stream.triangles.push_back({range.draw, i, 0, 0, 1});
+                scene.stream.triangles.own().push_back({range.draw, i, 0, 0, 1});
         }
 }
 

@@ -43,7 +43,7 @@ class QuadPass {
     /// Begins a triangle of `draw`; besides the tiles of its quads it visits `empty_tiles`, at least one tile in all.
     std::uint32_t triangle(std::uint32_t draw = 0, std::uint32_t empty_tiles = 0) {
         const auto quads = static_cast<pipeline::QuadId>(stream.quads.size());
-        stream.triangles.push_back({draw, 0, quads, 0, empty_tiles});
+        stream.triangles.own().push_back({draw, 0, quads, 0, empty_tiles});
         if (context.shader_costs.size() <= draw) context.shader_costs.resize(draw + 1, {1, 0, 1});
         return static_cast<std::uint32_t>(stream.triangles.size() - 1);
     }
@@ -51,7 +51,7 @@ class QuadPass {
     /// Adds a quad to the last triangle; tiles come in the order of the stream.
     pipeline::QuadId quad(std::uint32_t x, std::uint32_t y, std::uint8_t mask = 15, float depth = 0.5F) {
         if (stream.triangles.empty()) triangle();
-        pipeline::Triangle& owner = stream.triangles.back();
+        pipeline::Triangle& owner = stream.triangles.own().back();
         const auto tile = [](const pipeline::Quad& quad) { return quad.y / 8 * 4096 + quad.x / 8; };
         const pipeline::Quad quad{static_cast<std::uint16_t>(x),
                                   static_cast<std::uint16_t>(y),
@@ -61,8 +61,8 @@ class QuadPass {
                                   0};
         if (owner.quads == 0 || tile(quad) != tile(stream.quads.back())) ++owner.tiles;
         ++owner.quads;
-        stream.quads.push_back(quad);
-        stream.depths.push_back({depth, depth, depth, depth});
+        stream.quads.own().push_back(quad);
+        stream.depths.own().push_back({depth, depth, depth, depth});
         stream.colours.push_back({});
         return static_cast<pipeline::QuadId>(stream.quads.size() - 1);
     }

@@ -276,56 +276,5 @@ TEST(Reference, TheNumberOfStreamsIsThatOfTheDrawPasses) {
     EXPECT_THROW(run_reference(kit.frame, {}), sim::InternalError);
 }
 
-TEST(Composite, IsFrontToBackWithUniformOpacity) {
-    FrameKit kit(4, 4);
-    const glm::vec4 near(1, 0, 0, 1), far(0, 1, 0, 1);
-    const std::uint32_t back = kit.add_layer(0.75F, far), front = kit.add_layer(0.25F, near);
-    kit.add_pass("peel", {back, front}).kbuffer = tests::kbuffer_surface;
-    kit.add_pass("resolve", PassKind::resolve);
-    kit.frame.program = std::make_shared<SmallestDepths>(4, 4);
-    kit.frame.opacity = 0.25F;
-    kit.frame.background = glm::vec4(0, 0, 1, 1);
-    const ReferenceImage image = kit.run();
-    ASSERT_EQ(image.picture.size(), 64U);
-    EXPECT_FLOAT_EQ(image.picture[0], 0.25F);
-    EXPECT_FLOAT_EQ(image.picture[1], 0.75F * 0.25F);
-    EXPECT_FLOAT_EQ(image.picture[2], 0.75F * 0.75F);
-    EXPECT_EQ(image.picture[3], 1.0F);
-}
-
-TEST(Composite, OpaqueSurfacesAreTheBackground) {
-    FrameKit kit(2, 2);
-    const std::uint32_t wall = kit.add_layer(0.5F, {0, 1, 0, 1}), glass = kit.add_layer(0.25F, {1, 0, 0, 1});
-    Pass& opaque = kit.add_pass("opaque", {wall});
-    opaque.states[0].depth = {true, true};
-    opaque.targets = {tests::colour_surface};
-    kit.add_pass("peel", {glass}).kbuffer = tests::kbuffer_surface;
-    kit.add_pass("resolve", PassKind::resolve);
-    kit.frame.program = std::make_shared<SmallestDepths>(2, 4);
-    const ReferenceImage image = kit.run();
-    EXPECT_FLOAT_EQ(image.picture[0], 0.5F);
-    EXPECT_FLOAT_EQ(image.picture[1], 0.5F);
-    EXPECT_EQ(image.colour[0], 0.0F); // the surface itself stays
-    EXPECT_EQ(image.colour[1], 1.0F);
-}
-
-TEST(Composite, DepthOnlyEntriesAreGreyAndDarkerWithDistance) {
-    Frame frame;
-    frame.view.width = 3;
-    frame.view.height = 1;
-    frame.program = std::make_shared<SmallestDepths>(4, 1);
-    frame.opacity = 1.0F;
-    frame.background = glm::vec4(0.0F);
-    const std::vector<float> kbuffer{0.0F, 2, 2, 2, 0.5F, 2, 2, 2, 1.0F, 2, 2, 2};
-    for (const bool perspective : {false, true}) {
-        frame.view.projection = perspective ? glm::perspective(1.0F, 1.0F, 0.5F, 50.0F) : glm::mat4(1.0F);
-        const std::vector<float> picture = composite(frame, {kbuffer, {}, {}});
-        EXPECT_NEAR(picture[0], 0.9F, 1e-5F);
-        EXPECT_LT(picture[4], picture[0]);
-        EXPECT_NEAR(picture[8], 0.1F, 1e-4F);
-        EXPECT_EQ(picture[4], picture[5]);
-    }
-}
-
 } // namespace
 } // namespace pipeline

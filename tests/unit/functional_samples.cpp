@@ -1,6 +1,5 @@
 // Pixels of several samples: which samples a triangle covers, their depths, the group's colour, the mean.
 // Source: Vulkan 1.3, standard sample locations; the laws of coverage as for pixel centres.
-#include "pipeline/functional/composite.hpp"
 #include "pipeline/functional/frame_streams.hpp"
 #include "pipeline/functional/sample_pattern.hpp"
 #include "pipeline/output/surface_layout.hpp"

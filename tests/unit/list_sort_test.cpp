@@ -94,7 +94,7 @@ TEST(ListSort, ItsArrayTakesRegisters) {
     const auto registers = [](std::uint32_t longest, const ListsSite& site, std::uint32_t k, const char* entry) {
         const auto program = models::make_program("nearest-k", entry, k);
         pipeline::FragmentStream stream;
-        stream.depths.resize(longest);
+        stream.depths.own().resize(longest);
         pipeline::FragmentLists lists({8, 8, 1});
         for (std::uint32_t i = 0; i < longest; ++i) lists.keep(0, 0, {i, i});
         return pipeline::list_sort_pass("sort", site, *program, lists, stream).registers;

@@ -125,7 +125,7 @@ TEST(PassGraph, WritesNobodyReadsAreDropped) {
 
 TEST(Workloads, TransparencyDrawsEverythingIntoTheKBuffer) {
     const Frame frame = frame_with({});
-    EXPECT_EQ(pass_names(frame), (Names{"clear k-buffer", "geometry", "resolve"}));
+    EXPECT_EQ(pass_names(frame), (Names{"clear k-buffer", "geometry", "picture"}));
     EXPECT_EQ(frame.passes[1].draws, (std::vector<std::uint32_t>{0, 1, 2}));
     EXPECT_TRUE(frame.passes[1].runs_program());
     EXPECT_FALSE(frame.passes[1].states[0].depth.test);
@@ -157,7 +157,7 @@ TEST(Workloads, DepthsAloneNeedNoColours) {
 
 TEST(Workloads, TransparentMaterialsLieBehindOpaqueOnes) {
     const Frame frame = frame_with({"transparent=materials"});
-    EXPECT_EQ(pass_names(frame), (Names{"clear", "opaque", "clear k-buffer", "geometry", "resolve"}));
+    EXPECT_EQ(pass_names(frame), (Names{"clear", "opaque", "clear k-buffer", "geometry", "picture"}));
     EXPECT_EQ(frame.passes[1].draws, (std::vector<std::uint32_t>{0, 1}));
     EXPECT_TRUE(frame.passes[1].states[0].depth.test && frame.passes[1].states[0].depth.write &&
                 frame.passes[1].writes_colour());
@@ -181,7 +181,7 @@ TEST(Workloads, SceneWithoutTransparentMaterialsHasNoKBuffer) {
     traces::WorkloadOptions options;
     options.set("transparent=materials");
     const Frame frame = traces::build_frame(opaque, traces::make_view(opaque, "auto", 8, 8), "transparency", options);
-    EXPECT_EQ(pass_names(frame), (Names{"clear", "opaque", "resolve"}));
+    EXPECT_EQ(pass_names(frame), (Names{"clear", "opaque"}));
     EXPECT_EQ(frame.program, nullptr);
     EXPECT_EQ(left_out(frame)[0], "pass geometry: no draw has a transparent material");
 }

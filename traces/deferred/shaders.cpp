@@ -11,7 +11,6 @@ namespace traces {
 
 namespace {
 
-using pipeline::LaneIndices;
 using pipeline::QuadPlaces;
 using pipeline::QuadTexels;
 using pipeline::ShaderInput;

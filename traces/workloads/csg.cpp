@@ -40,10 +40,10 @@ CsgExpression read_expression(const CsgParams& params, std::size_t draws) {
 
 pipeline::Frame build(const Scene& scene, const pipeline::View& view, const CsgParams& params) {
     pipeline::Frame frame = frame_of(scene, view);
-    frame.resolve = std::make_shared<const CsgPicture>(read_expression(params, frame.draws.size()));
     frame.program = models::make_nearest_k(models::EntryKind::zo, params.k);
     frame.background = {params.background[0], params.background[1], params.background[2], 1.0F};
-    return kbuffer_frame(std::move(frame));
+    const CsgExpression expression = read_expression(params, frame.draws.size());
+    return kbuffer_frame(frame, csg_picture(frame, expression));
 }
 
 std::vector<std::optional<double>> distances_of(const CsgSurface& surface) {
@@ -76,7 +76,7 @@ TruthMethod truth(const Scene&, const pipeline::Frame& frame, const CsgParams& p
         }
     };
     method.finish = [solid](const pipeline::Frame& drawn, TruthPicture& picture) {
-        picture.colours = CsgPicture::shaded(drawn, *solid);
+        picture.colours = shaded(drawn, *solid);
     };
     method.rasterized = [expression](const pipeline::Frame& drawn, std::span<const float> kbuffer) {
         return distances_of(csg_surface(drawn, kbuffer, *expression));

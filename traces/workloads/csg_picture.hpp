@@ -4,25 +4,14 @@
 
 #include "traces/workloads/csg_surface.hpp"
 
-#include <span>
-#include <utility>
 #include <vector>
 
 namespace traces {
 
-class CsgPicture final : public pipeline::Resolve {
-  public:
-    explicit CsgPicture(CsgExpression expression) : expression_(std::move(expression)) {}
+/// Of `frame`, which is complete but for its passes.
+models::MakePicture csg_picture(const pipeline::Frame& frame, const CsgExpression& expression);
 
-    const CsgExpression& expression() const { return expression_; }
-
-    std::vector<float> picture(const pipeline::Frame& frame, const pipeline::FinishedSurfaces& surfaces) const override;
-
-    /// The same of a surface however found: RGBA floats per pixel.
-    static std::vector<float> shaded(const pipeline::Frame& frame, const CsgSurface& surface);
-
-  private:
-    CsgExpression expression_;
-};
+/// The same of a surface however found: RGBA floats per pixel.
+std::vector<float> shaded(const pipeline::Frame& frame, const CsgSurface& surface);
 
 } // namespace traces

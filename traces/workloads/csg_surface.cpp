@@ -4,24 +4,29 @@
 
 namespace traces {
 
+PixelSurface csg_of_pixel(const pipeline::ModifyProgram& program, const float* pixel, const pipeline::EyeDepth& depth,
+                          CsgWalk& walk, std::size_t draws) {
+    walk.begin();
+    const float* entry = pixel;
+    for (std::uint32_t i = 0; i < program.k() && entry[0] != models::empty_depth; ++i) {
+        const auto object =
+            static_cast<std::uint32_t>(std::min<std::size_t>(static_cast<std::size_t>(entry[1]), draws - 1));
+        if (walk.cross(object)) return {depth.distance(entry[0]), object};
+        entry += program.floats_per_entry();
+    }
+    return {};
+}
+
 CsgSurface csg_surface(const pipeline::Frame& frame, std::span<const float> kbuffer, const CsgExpression& expression) {
-    const std::size_t pixels = std::size_t{frame.view.width} * frame.view.height, draws = frame.draws.size();
+    const std::size_t draws = frame.draws.size();
     const pipeline::EyeDepth depth(frame.view.projection);
-    CsgSurface surface{SurfaceImage(frame.view), std::vector<std::uint32_t>(pixels)};
+    CsgSurface surface{SurfaceImage(frame.view), std::vector<std::uint32_t>(frame.view.pixels())};
     CsgWalk walk(expression, draws);
-    for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
-        const float* entry = kbuffer.data() + pixel * frame.program->floats_per_pixel();
-        walk.begin();
-        for (std::uint32_t i = 0; i < frame.program->k() && entry[0] != models::empty_depth; ++i) {
-            const auto object =
-                static_cast<std::uint32_t>(std::min<std::size_t>(static_cast<std::size_t>(entry[1]), draws - 1));
-            if (walk.cross(object)) {
-                surface.image.set_distance(pixel, depth.distance(entry[0]));
-                surface.objects[pixel] = object;
-                break;
-            }
-            entry += frame.program->floats_per_entry();
-        }
+    for (std::size_t pixel = 0; pixel < surface.objects.size(); ++pixel) {
+        const float* entries = kbuffer.data() + pixel * frame.program->floats_per_pixel();
+        const PixelSurface found = csg_of_pixel(*frame.program, entries, depth, walk, draws);
+        surface.image.set_distance(pixel, found.distance);
+        surface.objects[pixel] = found.kind;
     }
     return surface;
 }

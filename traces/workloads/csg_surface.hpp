@@ -3,7 +3,7 @@
 
 #include "pipeline/frame.hpp"
 #include "traces/workloads/csg_expression.hpp"
-#include "traces/workloads/surface_image.hpp"
+#include "traces/workloads/surface_shader.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -35,6 +35,10 @@ class CsgWalk {
     const CsgExpression& expression_;
     std::vector<std::uint8_t> inside_; ///< by object
 };
+
+/// The first fragment of a pixel behind which the expression holds, and its draw, which is less than `draws`.
+PixelSurface csg_of_pixel(const pipeline::ModifyProgram& program, const float* pixel, const pipeline::EyeDepth& depth,
+                          CsgWalk& walk, std::size_t draws);
 
 /// Per pixel, from front to back, the first fragment behind which the expression holds is the surface. `kbuffer` has
 /// entries `zo` of the frame's program.

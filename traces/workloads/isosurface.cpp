@@ -40,9 +40,8 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const Isos
     setup.iso_values = iso_values_of(frame, scene, params.iso, range);
     setup.depth = pipeline::EyeDepth(view.projection);
     frame.program = models::make_isosurface(setup);
-    frame.resolve = make_isosurface_picture(params.silhouettes);
     frame.background = {params.background[0], params.background[1], params.background[2], 1.0F};
-    return kbuffer_frame(std::move(frame));
+    return kbuffer_frame(std::move(frame), isosurface_picture(params.silhouettes));
 }
 
 } // namespace

@@ -1,7 +1,9 @@
 // The rendering methods, one file each.
 #pragma once
 
+#include "models/programs/picture_shader.hpp"
 #include "traces/parameters.hpp"
+#include "traces/pass_graph.hpp"
 #include "traces/workloads.hpp"
 
 #include <fmt/format.h>
@@ -53,9 +55,17 @@ Workload make_workload(std::string id, std::string summary,
 /// What frames of all workloads have in common: the scene with all its draws, seen through `view`.
 pipeline::Frame frame_of(const Scene& scene, const pipeline::View& view);
 
+/// Appends the pass that makes the frame's picture of its k-buffer, which takes no time: over the colour surface, or
+/// over the background. The picture is the output.
+void add_picture(PassGraph& graph, const pipeline::Frame& frame, const models::MakePicture& picture,
+                 bool over_surface = false);
+
 /// The graph of the methods that do nothing but fill a k-buffer: clear, all draws with both faces through the frame's
-/// program, and the picture that its resolve makes.
-pipeline::Frame kbuffer_frame(pipeline::Frame frame, pipeline::FragmentColour colour = pipeline::FragmentColour::lit);
+/// program, and the picture.
+pipeline::Frame kbuffer_frame(pipeline::Frame frame, const models::MakePicture& picture,
+                              pipeline::FragmentColour colour = pipeline::FragmentColour::lit);
+/// With a picture that frame.resolve makes.
+pipeline::Frame resolved_frame(pipeline::Frame frame);
 
 /// The workload with `change(options, name)` applied to what it is given: as_text(), as_list(), own_k().
 Workload taking(Workload workload, void (*change)(WorkloadOptions&, const std::string&), std::string name);

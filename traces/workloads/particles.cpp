@@ -4,6 +4,7 @@
 // The hardware of the time draws points as they are; here the sprite is two triangles, made for each view.
 #include "models/programs/isosurface.hpp"
 #include "models/programs/nearest_k.hpp"
+#include "models/programs/pictures.hpp"
 #include "traces/workloads/isosurface_picture.hpp"
 #include "traces/workloads/methods.hpp"
 #include "traces/workloads/scalar_field.hpp"
@@ -59,15 +60,14 @@ pipeline::Frame isosurface_frame(pipeline::Frame frame, const Scene& scene, cons
     setup.iso_values = iso_values_of(frame, scene, params.iso, range);
     setup.depth = pipeline::EyeDepth(frame.view.projection);
     frame.program = models::make_isosurface(setup);
-    frame.resolve = make_isosurface_picture(params.silhouettes);
-    return kbuffer_frame(std::move(frame));
+    return kbuffer_frame(std::move(frame), isosurface_picture(params.silhouettes));
 }
 
 pipeline::Frame layers_frame(pipeline::Frame frame, const ParticlesParams& params) {
     draw_sprites(frame, points_of(frame), params.size, SpriteColour::picture);
     frame.program = models::make_nearest_k(models::EntryKind::rgbz, params.k);
     frame.opacity = params.opacity;
-    return kbuffer_frame(std::move(frame));
+    return kbuffer_frame(std::move(frame), models::layers_picture(params.opacity));
 }
 
 pipeline::Frame build(const Scene& scene, const pipeline::View& view, const ParticlesParams& params) {

@@ -26,20 +26,17 @@ bool is_smooth(const glm::dvec3& back, const glm::dvec3& ahead) {
 
 } // namespace
 
-SurfaceImage::SurfaceImage(const pipeline::View& view)
-    : rays_(view), width_(view.width), height_(view.height), distances_(std::size_t{view.width} * view.height, none) {}
-
-SurfaceImage::Neighbour SurfaceImage::neighbour(std::uint32_t x, std::uint32_t y, int dx, int dy) const {
+SurfaceShape::Neighbour SurfaceShape::neighbour(std::uint32_t x, std::uint32_t y, int dx, int dy) const {
     const std::int64_t column = std::int64_t{x} + dx, row = std::int64_t{y} + dy;
     if (column < 0 || column >= width_ || row < 0 || row >= height_) return {};
     const auto u = static_cast<std::uint32_t>(column), v = static_cast<std::uint32_t>(row);
     if (!sees(u, v)) return {};
-    return {true, rays_.place(u, v, distance(u, v))};
+    return {true, rays_->place(u, v, distance(u, v))};
 }
 
 // Along the surface in the direction (dx, dy) of the picture, of any length.
-glm::dvec3 SurfaceImage::step(std::uint32_t x, std::uint32_t y, int dx, int dy) const {
-    const glm::dvec3 here = rays_.place(x, y, distance(x, y));
+glm::dvec3 SurfaceShape::step(std::uint32_t x, std::uint32_t y, int dx, int dy) const {
+    const glm::dvec3 here = rays_->place(x, y, distance(x, y));
     const Neighbour before = neighbour(x, y, -dx, -dy), behind = neighbour(x, y, dx, dy);
     const glm::dvec3 back = here - before.place, ahead = behind.place - here;
     if (before.seen && behind.seen) {
@@ -51,20 +48,20 @@ glm::dvec3 SurfaceImage::step(std::uint32_t x, std::uint32_t y, int dx, int dy) 
     return {dx, -dy, 0.0}; // one pixel of a surface: it faces the eye
 }
 
-glm::dvec3 SurfaceImage::normal(std::uint32_t x, std::uint32_t y) const {
+glm::dvec3 SurfaceShape::normal(std::uint32_t x, std::uint32_t y) const {
     const glm::dvec3 normal = glm::cross(step(x, y, 1, 0), step(x, y, 0, -1));
     const double length = glm::length(normal);
     return length > 0.0 && std::isfinite(length) ? normal / length : glm::dvec3(0.0, 0.0, 1.0);
 }
 
-double SurfaceImage::lambert(std::uint32_t x, std::uint32_t y) const {
+double SurfaceShape::lambert(std::uint32_t x, std::uint32_t y) const {
     constexpr double ambient = pipeline::ambient_light;
     return ambient + (1.0 - ambient) * std::fabs(normal(x, y).z);
 }
 
-bool SurfaceImage::is_silhouette(std::uint32_t x, std::uint32_t y) const {
+bool SurfaceShape::is_silhouette(std::uint32_t x, std::uint32_t y) const {
     constexpr std::array<std::array<int, 2>, 4> around{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
-    const glm::dvec3 here = rays_.place(x, y, distance(x, y));
+    const glm::dvec3 here = rays_->place(x, y, distance(x, y));
     return std::any_of(around.begin(), around.end(), [&](const auto& by) {
         const std::int64_t column = std::int64_t{x} + by[0], row = std::int64_t{y} + by[1];
         if (column < 0 || column >= width_ || row < 0 || row >= height_)

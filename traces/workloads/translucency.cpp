@@ -60,17 +60,15 @@ std::vector<double> extinctions(const TranslucencyParams& params, std::size_t dr
 
 pipeline::Frame build(const Scene& scene, const pipeline::View& view, const TranslucencyParams& params) {
     pipeline::Frame frame = frame_of(scene, view);
-    frame.resolve =
-        std::make_shared<const TranslucencyPicture>(extinctions(params, frame.draws.size()), params.fresnel);
+    const Translucency objects(extinctions(params, frame.draws.size()), params.fresnel);
     frame.program = models::make_nearest_k(entry_of(params), params.k);
     frame.background = {params.background[0], params.background[1], params.background[2], 1.0F};
-    return kbuffer_frame(std::move(frame), pipeline::FragmentColour::cosine);
+    return kbuffer_frame(std::move(frame), translucency_picture(objects), pipeline::FragmentColour::cosine);
 }
 
 // The shader gives cosines as colours.
 TruthMethod truth(const Scene&, const pipeline::Frame& frame, const TranslucencyParams& params) {
-    const auto medium =
-        std::make_shared<const TranslucencyPicture>(extinctions(params, frame.draws.size()), params.fresnel);
+    const auto medium = std::make_shared<const Translucency>(extinctions(params, frame.draws.size()), params.fresnel);
     TruthMethod method;
     method.channels = {{"inside", "length"}};
     method.pixel = [medium](Rays& rays, const PixelSurfaces& surfaces, std::uint32_t x, std::uint32_t y,

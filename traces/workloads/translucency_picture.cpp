@@ -1,6 +1,7 @@
 #include "traces/workloads/translucency_picture.hpp"
 
 #include "models/programs/nearest_k.hpp" // empty_depth
+#include "pipeline/functional/sample_pattern.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -30,9 +31,8 @@ void read_entries(const pipeline::ModifyProgram& program, const float* pixel, co
 
 } // namespace
 
-TranslucencyPicture::Passage TranslucencyPicture::passage(std::span<const TranslucentSurface> surfaces,
-                                                          const ViewRays& rays, std::uint32_t x,
-                                                          std::uint32_t y) const {
+Translucency::Passage Translucency::passage(std::span<const TranslucentSurface> surfaces, const ViewRays& rays,
+                                            std::uint32_t x, std::uint32_t y) const {
     constexpr double outside = std::numeric_limits<double>::infinity();
     std::vector<double> entered(sigma_.size(), outside);
     Passage passage;
@@ -53,22 +53,22 @@ TranslucencyPicture::Passage TranslucencyPicture::passage(std::span<const Transl
     return passage;
 }
 
-std::vector<float> TranslucencyPicture::picture(const pipeline::Frame& frame,
-                                                const pipeline::FinishedSurfaces& finished) const {
-    const std::span<const float> kbuffer = finished.kbuffer;
-    const ViewRays rays(frame.view);
-    const std::size_t floats = frame.program->floats_per_pixel();
-    std::vector<TranslucentSurface> surfaces;
-    std::vector<float> picture;
-    picture.reserve(kbuffer.size() / floats * 4);
-    for (std::uint32_t y = 0; y < frame.view.height; ++y)
-        for (std::uint32_t x = 0; x < frame.view.width; ++x) {
-            read_entries(*frame.program, kbuffer.data() + picture.size() / 4 * floats, rays, surfaces);
-            const auto light = static_cast<float>(passage(surfaces, rays, x, y).transmittance);
-            const glm::vec3 colour = glm::vec3(frame.background) * light;
-            picture.insert(picture.end(), {colour.r, colour.g, colour.b, 1.0F});
-        }
-    return picture;
+// For each entry its distance and that of its partner, their length, an exponential, and five products of Fresnel.
+models::MakePicture translucency_picture(const Translucency& objects) {
+    return [objects](const models::PictureSetup& setup) {
+        std::vector<ViewRays> rays;
+        for (std::uint32_t sample = 0; sample < setup.view.samples; ++sample)
+            rays.emplace_back(setup.view.samples == 1 ? setup.view : view_of_sample(setup.view, sample));
+        return models::picture_shader(
+            setup, setup.program->k() * 16 + 2,
+            [objects, rays = std::move(rays), program = setup.program](const models::PicturePlace& at,
+                                                                       const float* pixel, const glm::vec3& behind) {
+                std::vector<TranslucentSurface> surfaces;
+                read_entries(*program, pixel, rays[at.sample], surfaces);
+                return behind *
+                       static_cast<float>(objects.passage(surfaces, rays[at.sample], at.x, at.y).transmittance);
+            });
+    };
 }
 
 } // namespace traces

@@ -7,7 +7,7 @@
 // transmits 1 - (1 - cos)^5 of the light, Schlick's Fresnel term without reflection at normal incidence.
 #pragma once
 
-#include "pipeline/frame.hpp"
+#include "models/programs/picture_shader.hpp"
 #include "traces/view_rays.hpp"
 
 #include <cstdint>
@@ -23,12 +23,10 @@ struct TranslucentSurface {
     float cosine = 1.0F; ///< between ray and normal; with Fresnel only
 };
 
-class TranslucencyPicture final : public pipeline::Resolve {
+class Translucency {
   public:
     /// `sigma`: extinction of each draw, or of the one object that all draws are the surface of.
-    TranslucencyPicture(std::vector<double> sigma, bool fresnel) : sigma_(std::move(sigma)), fresnel_(fresnel) {}
-
-    std::vector<float> picture(const pipeline::Frame& frame, const pipeline::FinishedSurfaces& surfaces) const override;
+    Translucency(std::vector<double> sigma, bool fresnel) : sigma_(std::move(sigma)), fresnel_(fresnel) {}
 
     struct Passage {
         double transmittance = 1.0;
@@ -42,5 +40,8 @@ class TranslucencyPicture final : public pipeline::Resolve {
     std::vector<double> sigma_;
     bool fresnel_;
 };
+
+/// Entries are depth, then, as far as there are any, object and cosine.
+models::MakePicture translucency_picture(const Translucency& objects);
 
 } // namespace traces

@@ -5,6 +5,7 @@
 // Instead of A6 a program that composites may run: A7, multi-layer alpha blending, or one that the user wrote.
 #include "models/programs/library.hpp"
 #include "models/programs/nearest_k.hpp"
+#include "models/programs/pictures.hpp"
 #include "pipeline/format_choice.hpp"
 #include "sim/check.hpp"
 #include "sim/suggest.hpp"
@@ -98,7 +99,6 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const Tran
     pipeline::Frame frame = frame_of(scene, view);
     const models::ProgramChoice choice = program_of(params);
     frame.program = choice.program;
-    frame.resolve = choice.picture;
     frame.opacity = params.opacity;
     frame.background = {params.background[0], params.background[1], params.background[2], 1.0F};
     frame.depth_format = format_of(params.depth_format);
@@ -107,7 +107,7 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const Tran
     const bool with_opaque = !draws.opaque.empty();
     const bool with_transparent = !draws.transparent.empty();
     const bool colours = frame.program->needs_colour();
-    PassGraph graph(std::move(frame));
+    PassGraph graph(frame);
     if (with_opaque) {
         graph.add_clear("clear", {depth_surface, colour_surface});
         graph.add_draw("opaque", {depth_surface}, {depth_surface, colour_surface}, std::move(draws.opaque));
@@ -116,19 +116,17 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const Tran
                                            ? "every draw is transparent by choice"
                                            : "every draw has a transparent material");
     }
-    std::vector<std::string> resolved;
     if (with_transparent) {
         graph.add_clear("clear k-buffer", {kbuffer_surface});
         graph.add_draw("geometry", with_opaque ? std::vector<std::string>{depth_surface} : std::vector<std::string>{},
                        {kbuffer_surface}, std::move(draws.transparent), params.faces == Faces::both);
-        resolved.emplace_back(kbuffer_surface);
+        // Layers of depths alone are not laid over a colour, so the opaque pass then serves for its depth only.
+        add_picture(graph, frame, choice.picture ? choice.picture : models::layers_picture(params.opacity),
+                    with_opaque && colours);
     } else {
         graph.leave_out("pass geometry", "no draw has a transparent material");
+        graph.output(colour_surface);
     }
-    // Layers of depths alone are not laid over a colour, so the opaque pass then serves for its depth only.
-    if (with_opaque && (colours || !with_transparent)) resolved.emplace_back(colour_surface);
-    graph.add_resolve("resolve", std::move(resolved), {picture_surface});
-    graph.output(picture_surface);
     return graph.lower();
 }
 

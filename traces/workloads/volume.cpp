@@ -82,25 +82,14 @@ models::TransferFunction transfer_of(const VolumeParams& params, ScalarRange ran
     return transfer;
 }
 
-class VolumePicture final : public pipeline::Resolve {
-  public:
-    std::vector<float> picture(const pipeline::Frame& frame,
-                               const pipeline::FinishedSurfaces& surfaces) const override {
-        const std::span<const float> kbuffer = surfaces.kbuffer;
-        const pipeline::ModifyProgram& program = *frame.program;
-        const std::size_t floats = program.floats_per_pixel();
-        const std::size_t state = std::size_t{program.k()} * program.floats_per_entry();
-        std::vector<float> picture;
-        picture.reserve(kbuffer.size() / floats * 4);
-        for (std::size_t pixel = 0; pixel < kbuffer.size(); pixel += floats) {
-            const float* colour = kbuffer.data() + pixel + state;
-            for (int channel = 0; channel < 3; ++channel)
-                picture.push_back(colour[channel] + (1.0F - colour[3]) * frame.background[channel]);
-            picture.push_back(1.0F);
-        }
-        return picture;
-    }
-};
+std::shared_ptr<const pipeline::Shader> volume_picture(const models::PictureSetup& setup) {
+    const std::size_t state = std::size_t{setup.program->k()} * setup.program->floats_per_entry();
+    return models::picture_shader(setup, 2,
+                                  [state](const models::PicturePlace&, const float* pixel, const glm::vec3& behind) {
+                                      const float* colour = pixel + state;
+                                      return glm::vec3(colour[0], colour[1], colour[2]) + (1.0F - colour[3]) * behind;
+                                  });
+}
 
 pipeline::Frame build(const Scene& scene, const pipeline::View& view, const VolumeParams& params) {
     pipeline::Frame frame = frame_of(scene, view);
@@ -114,9 +103,8 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const Volu
     setup.longest_gap = std::max(longest_edge(frame), 1e-30F);
     setup.depth = pipeline::EyeDepth(view.projection);
     frame.program = models::make_volume(setup);
-    frame.resolve = std::make_shared<const VolumePicture>();
     frame.background = {params.background[0], params.background[1], params.background[2], 1.0F};
-    return kbuffer_frame(std::move(frame));
+    return kbuffer_frame(std::move(frame), volume_picture);
 }
 
 } // namespace

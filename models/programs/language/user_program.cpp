@@ -70,8 +70,8 @@ class UserProgram final : public pipeline::ModifyProgram {
     pipeline::ProgramCost cost_;
 };
 
-std::shared_ptr<const pipeline::Resolve> picture_of(const language::Program& program) {
-    if (program.picture == language::Picture::layers) return nullptr;
+MakePicture picture_of(const language::Program& program) {
+    if (program.picture == language::Picture::layers) return {};
     const bool of_state = program.picture == language::Picture::state;
     const auto& fields = of_state ? program.state : program.entry;
     ColourSlots slots{};

@@ -20,7 +20,7 @@ TruthMethod layered_truth() {
             colour += transmitted * opacity * glm::dvec3(layer.colour);
             transmitted *= 1.0 - opacity;
         }
-        colour += transmitted * glm::dvec3(surfaces.has_opaque ? surfaces.opaque.colour : glm::vec3(frame.background));
+        colour += transmitted * glm::dvec3(surfaces.has_opaque ? surfaces.opaque.colour : frame.background);
         picture.set_colour(picture.pixel(x, y), colour);
     };
     return method;

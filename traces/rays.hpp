@@ -42,13 +42,17 @@ struct RayHit {
 struct FrameSurface {
     double distance = 0.0;  ///< along the view axis
     std::uint32_t draw = 0; ///< index into Frame::draws
-    glm::vec3 colour{0.0F}; ///< as the shader gives it
+    bool front = true;      ///< its triangle's corners go round counter-clockwise on the screen
+    glm::vec4 colour{0.0F}; ///< as the material gives it: linear RGBA
+    glm::dvec3 normal{0.0}; ///< likewise, in the world, of unit length or 0; 0 where no shader of the frame reads it
 };
 
 /// What one pixel sees.
 struct PixelSurfaces {
-    std::vector<FrameSurface> layers; ///< of passes with a k-buffer, and in front of `opaque`, nearest first
-    FrameSurface opaque;              ///< nearest of the passes with a depth buffer
+    /// Of passes with a k-buffer, and of others what TruthMethod::hides sees through; in front of `opaque`, nearest
+    /// first.
+    std::vector<FrameSurface> layers;
+    FrameSurface opaque; ///< nearest of what is left of the passes with a depth buffer
     bool has_opaque = false;
     /// The ray passes a layer's or the opaque surface's edge closely, or sees one edge-on: a rasterizer, which puts
     /// corners on a grid, may rightly see something else (specification 004, section 10.4).
@@ -73,8 +77,13 @@ class Rays {
     /// occluded[i] becomes 1 if ray i meets anything that its alpha test leaves standing, else 0; what lies at either
     /// end does not count. `coherent`: neighbours in the list go nearly the same way.
     virtual void occluded(std::span<const WorldRay> rays, bool coherent, std::span<std::uint8_t> occluded) = 0;
-    /// What the frame's fragment shader makes of a hit, seen as the fragment of pixel (x, y): linear RGBA.
-    virtual glm::vec4 colour(const RayHit& hit, std::uint32_t x, std::uint32_t y) const = 0;
+    /// Hits that lie nearer than this to an end of a ray may be the surface there.
+    virtual double clearance() const = 0;
+    /// What a view along the ray would see at a hit, with textures in their finest level; nothing where it faces away
+    /// or is discarded. The distance is t of the hit.
+    virtual std::optional<FrameSurface> surface(const RayHit& hit) const = 0;
+    /// What another pixel sees, as TruthMethod::pixel gets it of its own. `seen` is overwritten.
+    virtual void surfaces(std::uint32_t x, std::uint32_t y, PixelSurfaces& seen) = 0;
 };
 
 /// The points centre + a * u + b * v with a and b in [-1,1], in world space; u and v are orthogonal.
@@ -113,12 +122,14 @@ struct TruthMethod {
     /// Whose passes say which surfaces there are, where not those of the workload's own frame.
     std::shared_ptr<const pipeline::Frame> frame = {};
     std::vector<TruthChannel> channels = {}; ///< names and quantities
+    /// Whether a fragment of a pass with a depth buffer hides what lies behind it; empty: all do.
+    std::function<bool(const FrameSurface&)> hides = {};
     /// Makes colour and channels of pixel (x, y) from what it sees. Called for pixels in any order, by many threads.
     std::function<void(Rays&, const PixelSurfaces&, std::uint32_t x, std::uint32_t y, TruthPicture&)> pixel = {};
     std::function<void(const pipeline::Frame&, TruthPicture&)> finish = {}; ///< after the last pixel; may be empty
-    /// What a rasterized k-buffer has for the first channel, by pixel: compared in place of the colours, for pictures
-    /// that magnify differences of depths. May be empty.
-    std::function<std::vector<std::optional<double>>(const pipeline::Frame&, std::span<const float> kbuffer)>
+    /// What the rasterized surfaces of its frame have for the first channel, by pixel: distances that are compared in
+    /// place of the colours, where these are no fair comparison. May be empty.
+    std::function<std::vector<std::optional<double>>(const pipeline::Frame&, const pipeline::FinishedSurfaces&)>
         rasterized = {};
     std::optional<SquareLight> light = {}; ///< how much of it each pixel's surface sees is part of the truth
     /// What the truth follows from, beside scene, view and what is asked of the rays; nothing: all parameters of the

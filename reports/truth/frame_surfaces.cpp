@@ -1,6 +1,7 @@
 #include "reports/truth/frame_surfaces.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace reports {
 
@@ -18,11 +19,12 @@ bool is_doubtful(const RayHit& hit) {
 
 } // namespace
 
-FrameSurfaces::FrameSurfaces(const pipeline::Frame& frame, const RayScene& scene, const PixelRays& rays)
+FrameSurfaces::FrameSurfaces(const pipeline::Frame& frame, const RayScene& scene, const PixelRays& rays, Hides hides)
     : roles_(frame.draws.size()),
       view_mirrors_(mirrors(frame.view, rays.sense())),
       rays_(rays),
-      shading_(frame, scene, rays) {
+      shading_(frame, scene, rays),
+      hides_(std::move(hides)) {
     for (const pipeline::Pass& pass : frame.passes)
         for (const std::uint32_t draw : pass.draws)
             if (pass.runs_program() || pass.writes_depth())
@@ -32,10 +34,8 @@ FrameSurfaces::FrameSurfaces(const pipeline::Frame& frame, const RayScene& scene
             culling_.push_back(pipeline::culling_of(frame.resources->materials[draw.material].double_sided, model));
 }
 
-// A mirroring view turns all triangles round.
-bool FrameSurfaces::culled(const RayHit& hit) const {
+bool FrameSurfaces::culled(const RayHit& hit, bool counter_clockwise) const {
     if (roles_[hit.draw].both_faces) return false;
-    const bool counter_clockwise = hit.front != view_mirrors_;
     const pipeline::Culling culling = culling_[hit.mesh];
     return culling == (counter_clockwise ? pipeline::Culling::counter_clockwise : pipeline::Culling::clockwise);
 }
@@ -47,12 +47,13 @@ void FrameSurfaces::find(std::span<const RayHit> hits, std::uint32_t x, std::uin
     surfaces.doubtful = false;
     for (const RayHit& hit : hits) {
         const Role role = roles_[hit.draw].role;
-        if (role == Role::none || culled(hit)) continue;
+        const bool front = hit.front != view_mirrors_; // a mirroring view turns all triangles round
+        if (role == Role::none || culled(hit, front)) continue;
         surfaces.doubtful = surfaces.doubtful || is_doubtful(hit);
         const HitShading::Shaded shaded = shading_(hit, x, y);
         if (!shaded.alive) continue;
-        const FrameSurface surface{rays_.distance(hit.t), hit.draw, glm::vec3(shaded.colour)};
-        if (role == Role::layer) {
+        const FrameSurface surface{rays_.distance(hit.t), hit.draw, front, shaded.colour, shaded.normal};
+        if (role == Role::layer || (hides_ && !hides_(surface))) {
             surfaces.layers.push_back(surface);
             continue;
         }
@@ -60,6 +61,13 @@ void FrameSurfaces::find(std::span<const RayHit> hits, std::uint32_t x, std::uin
         surfaces.has_opaque = true;
         return; // it hides the rest
     }
+}
+
+std::optional<FrameSurface> FrameSurfaces::along_ray(const RayHit& hit) const {
+    if (roles_[hit.draw].role == Role::none || culled(hit, hit.front)) return std::nullopt;
+    const HitShading::Shaded shaded = shading_(hit);
+    if (!shaded.alive) return std::nullopt;
+    return FrameSurface{hit.t, hit.draw, hit.front, shaded.colour, shaded.normal};
 }
 
 } // namespace reports

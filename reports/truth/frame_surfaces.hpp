@@ -9,7 +9,9 @@
 #include "reports/truth/hit_shading.hpp"
 
 #include <cstdint>
+#include <functional>
 #include <glm/glm.hpp>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -24,12 +26,16 @@ inline constexpr float doubtful_cosine = 0.02F;
 
 class FrameSurfaces {
   public:
-    /// All three outlive it.
-    FrameSurfaces(const pipeline::Frame& frame, const RayScene& scene, const PixelRays& rays);
+    /// See traces::TruthMethod.
+    using Hides = std::function<bool(const FrameSurface&)>;
+
+    /// The first three outlive it.
+    FrameSurfaces(const pipeline::Frame& frame, const RayScene& scene, const PixelRays& rays, Hides hides = {});
 
     /// `hits`: of the pixel's ray, nearest first. `surfaces` is overwritten.
     void find(std::span<const RayHit> hits, std::uint32_t x, std::uint32_t y, PixelSurfaces& surfaces) const;
-    const HitShading& shading() const { return shading_; }
+    /// What a view along the ray sees at a hit; see traces::Rays.
+    std::optional<FrameSurface> along_ray(const RayHit& hit) const;
 
   private:
     enum class Role : std::uint8_t { none, layer, opaque };
@@ -37,13 +43,14 @@ class FrameSurfaces {
         Role role = Role::none;
         bool both_faces = false;
     };
-    bool culled(const RayHit& hit) const;
+    bool culled(const RayHit& hit, bool counter_clockwise) const;
 
     std::vector<DrawRole> roles_;            ///< by draw
     std::vector<pipeline::Culling> culling_; ///< by mesh, where not both faces are drawn
     bool view_mirrors_;
     const PixelRays& rays_;
     HitShading shading_;
+    Hides hides_;
 };
 
 } // namespace reports

@@ -10,6 +10,7 @@ namespace {
 
 pipeline::ShaderOptions shader_options(const pipeline::Frame& frame) {
     return {.colours = frame.needs.colours,
+            .normals = frame.needs.fragment_normals,
             .fragment_colour = frame.needs.fragment_colour,
             .perspective = frame.view.projection[2][3] != 0.0F,
             .textures = frame.needs.textures,
@@ -19,10 +20,18 @@ pipeline::ShaderOptions shader_options(const pipeline::Frame& frame) {
 /// The pixel's place in its 2x2 block.
 constexpr std::uint32_t lane_of(std::uint32_t x, std::uint32_t y) { return (y & 1U) * 2 + (x & 1U); }
 
+/// Four times the place of the hit: no footprint.
+pipeline::CornerWeights own_weights(const RayHit& hit) {
+    pipeline::CornerWeights weights;
+    weights.of1.fill(static_cast<float>(hit.u));
+    weights.of2.fill(static_cast<float>(hit.v));
+    return weights;
+}
+
 } // namespace
 
 HitShading::HitShading(const pipeline::Frame& frame, const RayScene& scene, const PixelRays& rays)
-    : scene_(scene), rays_(rays) {
+    : scene_(scene), rays_(rays), to_world_(glm::transpose(glm::dmat3(glm::dmat4(frame.view.view)))) {
     for (const pipeline::Draw& draw : scene.draws())
         for (const glm::mat4& model : draw.instances)
             shaders_.emplace_back(scene.resources(), scene.resources().geometries[draw.geometry],
@@ -34,10 +43,7 @@ HitShading::HitShading(const pipeline::Frame& frame, const RayScene& scene, cons
 // footprint comes from there.
 pipeline::CornerWeights HitShading::weights(const RayHit& hit, std::uint32_t x, std::uint32_t y) const {
     constexpr double largest = 1e6;
-    const auto u = static_cast<float>(hit.u), v = static_cast<float>(hit.v);
-    pipeline::CornerWeights weights;
-    weights.of1.fill(u);
-    weights.of2.fill(v);
+    pipeline::CornerWeights weights = own_weights(hit);
     if (!shaders_[hit.mesh].samples()) return weights;
     const auto corners = scene_.corners(hit.mesh, hit.triangle);
     for (std::uint32_t lane = 0; lane < 4; ++lane) {
@@ -53,12 +59,20 @@ pipeline::CornerWeights HitShading::weights(const RayHit& hit, std::uint32_t x, 
 }
 
 HitShading::Shaded HitShading::operator()(const RayHit& hit, std::uint32_t x, std::uint32_t y) const {
+    return shaded(hit, weights(hit, x, y), lane_of(x, y));
+}
+
+HitShading::Shaded HitShading::operator()(const RayHit& hit) const { return shaded(hit, own_weights(hit), 0); }
+
+HitShading::Shaded HitShading::shaded(const RayHit& hit, const pipeline::CornerWeights& weights,
+                                      std::uint32_t lane) const {
     const pipeline::FragmentShader& shader = shaders_[hit.mesh];
     if (!shader.needed()) return {};
-    const std::uint32_t lane = lane_of(x, y), covered = 1U << lane;
     const auto triangle = shader.triangle(scene_.vertices(hit.mesh, hit.triangle), nullptr);
-    const auto output = shader.shade(triangle, weights(hit, x, y), covered);
-    return {output.colours[lane], output.alive != 0};
+    const auto output = shader.shade(triangle, weights, 1U << lane);
+    const glm::dvec3 normal = to_world_ * glm::dvec3(output.normals[lane]);
+    const double length = glm::length(normal);
+    return {output.colours[lane], length > 0.0 ? normal / length : glm::dvec3(0.0), output.alive != 0};
 }
 
 } // namespace reports

@@ -19,15 +19,20 @@ class HitShading {
 
     struct Shaded {
         glm::vec4 colour{0.0F}; ///< linear RGBA; a cosine where the frame asks for it; 0 where it needs none
+        glm::dvec3 normal{0.0}; ///< in the world, of unit length or 0; 0 where the frame needs none
         bool alive = true;      ///< not discarded by the alpha test
     };
     Shaded operator()(const RayHit& hit, std::uint32_t x, std::uint32_t y) const;
+    /// Of any ray, textures read in their finest level.
+    Shaded operator()(const RayHit& hit) const;
 
   private:
     pipeline::CornerWeights weights(const RayHit& hit, std::uint32_t x, std::uint32_t y) const;
+    Shaded shaded(const RayHit& hit, const pipeline::CornerWeights& weights, std::uint32_t lane) const;
 
     const RayScene& scene_;
     const PixelRays& rays_;
+    glm::dmat3 to_world_;                           ///< of normals
     std::vector<pipeline::FragmentShader> shaders_; ///< by mesh
 };
 

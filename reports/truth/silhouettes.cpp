@@ -16,8 +16,12 @@ namespace {
 /// What the rays of a frame see when all of them are moved by some pixels.
 class MovedRays {
   public:
-    MovedRays(const pipeline::Frame& frame, const RayScene& scene, double x, double y)
-        : frame_(moved(frame, x, y)), scene_(scene), rays_(frame_.view), surfaces_(frame_, scene, rays_) {}
+    MovedRays(const pipeline::Frame& frame, const RayScene& scene, const traces::TruthMethod& method, double x,
+              double y)
+        : frame_(moved(frame, x, y)),
+          scene_(scene),
+          rays_(frame_.view),
+          surfaces_(frame_, scene, rays_, method.hides) {}
 
     void find(std::uint32_t x, std::uint32_t y, PixelSurfaces& found) {
         scene_.hits(rays_(x, y), hits_);
@@ -50,7 +54,7 @@ bool coplanar(const PixelSurfaces& surfaces) {
 } // namespace
 
 void mark_uncertain(Truth& truth, const pipeline::Frame& frame, const RayScene& scene,
-                    std::span<const std::uint32_t> pixels) {
+                    const traces::TruthMethod& method, std::span<const std::uint32_t> pixels) {
     std::vector<std::size_t> seen(pixels.size());
     const auto number = [](const PixelSurfaces& surfaces) {
         return 2 * surfaces.layers.size() + (surfaces.has_opaque ? 1 : 0);
@@ -58,7 +62,7 @@ void mark_uncertain(Truth& truth, const pipeline::Frame& frame, const RayScene& 
     PixelSurfaces surfaces;
     constexpr std::array<std::pair<int, int>, 5> steps{{{0, 0}, {-1, -1}, {-1, 1}, {1, -1}, {1, 1}}};
     for (const auto& [x, y] : steps) {
-        MovedRays rays(frame, scene, x * silhouette_grid, y * silhouette_grid);
+        MovedRays rays(frame, scene, method, x * silhouette_grid, y * silhouette_grid);
         for (std::size_t i = 0; i < pixels.size(); ++i) {
             rays.find(pixels[i] % truth.width, pixels[i] / truth.width, surfaces);
             const bool centre = x == 0;

@@ -19,6 +19,6 @@ inline constexpr double coplanar_share = 1e-5;
 /// Marks those of `pixels` as doubtful whose ray sees other surfaces when it is moved by the grid in any of four
 /// directions, or two surfaces that are coplanar. `scene` has the draws of the frame.
 void mark_uncertain(Truth& truth, const pipeline::Frame& frame, const RayScene& scene,
-                    std::span<const std::uint32_t> pixels);
+                    const traces::TruthMethod& method, std::span<const std::uint32_t> pixels);
 
 } // namespace reports

@@ -12,8 +12,8 @@ namespace {
 /// Of one piece of work, with counts of what it asked for.
 class FrameRays final : public traces::Rays {
   public:
-    FrameRays(const pipeline::Frame& frame, const RayScene& scene, const PixelRays& rays, const HitShading& shading)
-        : frame_(frame), scene_(scene), rays_(rays), shading_(shading) {}
+    FrameRays(const pipeline::Frame& frame, const RayScene& scene, const PixelRays& rays, const FrameSurfaces& surfaces)
+        : frame_(frame), scene_(scene), rays_(rays), surfaces_(surfaces) {}
 
     const pipeline::Frame& frame() const override { return frame_; }
     const traces::ViewRays& view_rays() const override { return rays_.in_eye_space(); }
@@ -31,8 +31,11 @@ class FrameRays final : public traces::Rays {
         to_light_ += rays.size();
         scene_.occluded(rays, coherent, occluded);
     }
-    glm::vec4 colour(const RayHit& hit, std::uint32_t x, std::uint32_t y) const override {
-        return shading_(hit, x, y).colour;
+    double clearance() const override { return scene_.clearance(); }
+    std::optional<FrameSurface> surface(const RayHit& hit) const override { return surfaces_.along_ray(hit); }
+    void surfaces(std::uint32_t x, std::uint32_t y, PixelSurfaces& seen) override {
+        hits(rays_(x, y), hits_);
+        surfaces_.find(hits_, x, y, seen);
     }
 
     std::uint64_t traced() const { return traced_; }
@@ -42,7 +45,8 @@ class FrameRays final : public traces::Rays {
     const pipeline::Frame& frame_;
     const RayScene& scene_;
     const PixelRays& rays_;
-    const HitShading& shading_;
+    const FrameSurfaces& surfaces_;
+    std::vector<RayHit> hits_;
     std::uint64_t traced_ = 0, to_light_ = 0;
 };
 
@@ -108,7 +112,7 @@ Truth trace_truth(const pipeline::Frame& frame, const RayScene& scene, const tra
                   const TruthPlan& plan, const TracingOptions& options) {
     Truth truth = blank_truth(frame, method, plan);
     const PixelRays rays(frame.view);
-    const FrameSurfaces frame_surfaces(frame, scene, rays);
+    const FrameSurfaces frame_surfaces(frame, scene, rays, method.hides);
     const double share = plan.light ? 0.1 : 1.0; // of the work
     TracingOptions here = options;
     if (options.progress) here.progress = [&](double done) { options.progress(share * done); };
@@ -117,7 +121,7 @@ Truth trace_truth(const pipeline::Frame& frame, const RayScene& scene, const tra
         const auto y = static_cast<std::uint32_t>(row);
         RowHits hits;
         PixelSurfaces surfaces;
-        FrameRays own(frame, scene, rays, frame_surfaces.shading());
+        FrameRays own(frame, scene, rays, frame_surfaces);
         hits.trace(scene, rays, truth.width, y);
         for (std::uint32_t x = 0; x < truth.width; ++x) {
             frame_surfaces.find(hits.of(x), x, y, surfaces);

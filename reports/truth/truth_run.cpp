@@ -72,7 +72,7 @@ void check(const Supervision& supervision, TruthRun& run) {
     if (wrong.empty()) return;
     // Few pixels are wrong, so only these are asked whether anybody could know better.
     const RayScene scene(run.frame->resources, run.frame->draws);
-    mark_uncertain(run.truth, *run.frame, scene, std::vector<std::uint32_t>(wrong.begin(), wrong.end()));
+    mark_uncertain(run.truth, *run.frame, scene, run.method, std::vector<std::uint32_t>(wrong.begin(), wrong.end()));
     run.errors = errors_of_reference(run.truth, run.method, *run.frame, reference);
 }
 

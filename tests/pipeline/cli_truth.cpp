@@ -129,7 +129,7 @@ TEST_F(CliTruth, SaysWhatIsWrongInOneLine) {
         EXPECT_NE(outcome.error.find(says), std::string::npos) << outcome.error;
     };
     expect({"--workload", "blended"}, 1,
-           "truth: expected a workload of transparency, opaque, translucency, csg, soft-shadows");
+           "truth: expected a workload of transparency, opaque, translucency, csg, soft-shadows, deferred");
     expect({"--workload", "transparancy"}, 1, "did you mean 'transparency'?");
     expect({"--light", "1,2,3"}, 1, "--light: expected nine numbers");
     expect({"--light", "0,6,0,1,0,0,1,0,1"}, 1, "--light: expected two half edges at right angles");

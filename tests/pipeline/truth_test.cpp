@@ -94,7 +94,8 @@ TEST_F(TruthTest, SolidsAreWhereTheFrameHasThem) {
             "gen:csg",
             {.width = 192, .height = 192, .workload = "csg", .knobs = {fmt::format("expression={}", expression)}});
         const Traced beside = traced(replay);
-        const auto error = reports::distance_error(beside.truth, beside.method, replay.frame, replay.reference.kbuffer);
+        const auto error =
+            reports::distance_error(beside.truth, beside.method, replay.frame, {replay.reference.kbuffer, {}, {}});
         EXPECT_TRUE(error.holds()) << text_of(error);
         EXPECT_GT(error.compared, 1000U);
     }
@@ -208,8 +209,9 @@ TEST_F(TruthTest, WorkloadsWithoutATruthAreRefused) {
         }
         return "";
     };
-    EXPECT_EQ(message("gen:slabs", {.workload = "blended"}),
-              "truth: expected a workload of transparency, opaque, translucency, csg, soft-shadows, got blended");
+    EXPECT_EQ(
+        message("gen:slabs", {.workload = "blended"}),
+        "truth: expected a workload of transparency, opaque, translucency, csg, soft-shadows, deferred, got blended");
     EXPECT_EQ(message("gen:slabs", {.knobs = {"entry=z"}}),
               "truth: workload transparency: entry: expected rgbz, the one that has colours");
     EXPECT_EQ(message("gen:slabs", {}), "");

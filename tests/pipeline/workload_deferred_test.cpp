@@ -15,6 +15,7 @@ using pipeline::Frame;
 using pipeline::Pass;
 using pipeline::SurfaceFormat;
 using Settings = std::vector<std::string>;
+using support::colours;
 using support::Replay;
 using support::surfaces_of;
 
@@ -133,7 +134,7 @@ TEST(Deferred, S003_D11_Equation31) {
     EXPECT_EQ(filtered(0.6F), glm::vec3(0.1F, 0.4F, 0.5F));
     EXPECT_EQ(filtered(0.7F), glm::vec3(0.0F));
     // Two opaque texels: full shadow behind either, which widens shadows by a row (section 4.1, 4).
-    EXPECT_EQ(light_through({0.3F, {1, 1, 1, 1}}, wall, 0.5F, light), glm::vec3(0.0F));
+    EXPECT_EQ(light_through<float>({0.3F, {1, 1, 1, 1}}, wall, 0.5F, light), glm::vec3(0.0F));
 }
 
 TEST(Deferred, S003_D12_Equation33) {

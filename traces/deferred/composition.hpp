@@ -2,10 +2,8 @@
 // Source: Aladağlı 2015, section 3.3 (specification 003, B8).
 #pragma once
 
+#include "traces/deferred/shadow_filter.hpp"
 #include "traces/deferred/world_normals.hpp"
-
-#include <algorithm>
-#include <cmath>
 
 namespace traces {
 
@@ -18,19 +16,16 @@ class Composition : public pipeline::Shader {
           height_(static_cast<std::int32_t>(eye.height)) {}
 
   protected:
-    /// Specular light is white.
-    static glm::vec3 lit(const glm::vec4& colour, const glm::vec4& light) {
-        return glm::vec3(colour) * glm::vec3(light) + light.a;
-    }
+    static glm::vec3 lit(const glm::vec4& colour, const glm::vec4& light) { return lit_by(light, glm::vec3(colour)); }
     /// Where one sees through a pane with these normals, on the screen.
     pipeline::QuadPlaces refracted(const pipeline::QuadPlaces& at, const pipeline::QuadTexels& normals) const {
         pipeline::QuadPlaces through = at;
         const auto pixels = static_cast<float>(options_.coefficient * height_);
         for (std::size_t i = 0; i < 4; ++i) {
             const glm::vec3 normal = to_eye_ * (glm::vec3(normals[i]) * 2.0F - 1.0F);
-            const auto along = [pixels](float part) { return static_cast<std::int32_t>(std::lround(pixels * part)); };
-            through.x[i] = std::clamp(at.x[i] + along(normal.x), 0, width_ - 1);
-            through.y[i] = std::clamp(at.y[i] - along(normal.y), 0, height_ - 1);
+            const glm::ivec2 to = seen_through({at.x[i], at.y[i]}, normal, pixels, {width_, height_});
+            through.x[i] = to.x;
+            through.y[i] = to.y;
         }
         return through;
     }

@@ -1,3 +1,4 @@
+#include "traces/deferred/reflection.hpp"
 #include "traces/deferred/shaders.hpp"
 #include "traces/deferred/shadow_filter.hpp"
 #include "traces/deferred/two_class_surface.hpp"
@@ -47,16 +48,9 @@ class Lighting {
     /// Equation 2.1: diffuse light, and specular in alpha. The normal runs from [-1,1] to [0,1].
     glm::vec4 reflected(const glm::dvec3& point, const glm::vec3& normal_code, const glm::vec4& specular,
                         const glm::vec3& light) const {
-        const glm::dvec3 normal = glm::dvec3(normal_code) * 2.0 - 1.0;
-        const glm::dvec3 to_light = glm::normalize(light_.place - point);
-        const double facing = glm::dot(normal, to_light);
-        if (!(facing > 0.0)) return glm::vec4(0.0F);
-        const glm::dvec3 mirrored = 2.0 * facing * normal - to_light;
-        const double along = std::max(glm::dot(mirrored, glm::normalize(eye_ - point)), 0.0);
-        const double shine = static_cast<double>(specular.r) * std::pow(along, static_cast<double>(specular.g) * 255.0);
-        const double share = options_.intensity * light_.arrives(point);
-        const glm::dvec3 diffuse = glm::dvec3(light) * (facing * share);
-        return glm::vec4(diffuse, shine * share * std::max({light.r, light.g, light.b}));
+        const ReflectingPoint from{point, glm::dvec3(normal_code) * 2.0 - 1.0, static_cast<double>(specular.r),
+                                   static_cast<double>(specular.g) * 255.0};
+        return glm::vec4(traces::reflected(light_, options_.intensity, glm::dvec3(light), from, eye_));
     }
 
     /// What arrives past the shadows, whose surfaces the shader knows from `first_map` on.
@@ -129,16 +123,16 @@ class Lighting {
         const QuadTexels colour_there = surfaces.fetch(map + 1, at.x, other, pixels);
         for (std::size_t i = 0; i < 4; ++i)
             if ((at.inside >> i & 1U) != 0)
-                light[i] =
-                    light_through({here[i].r, colour_here[i]}, {there[i].r, colour_there[i]}, at.depth[i], light[i]);
+                light[i] = light_through<float>({here[i].r, colour_here[i]}, {there[i].r, colour_there[i]}, at.depth[i],
+                                                light[i]);
     }
 
     static void filter_classes(const MapPlaces& at, unsigned pixels, SurfaceAccess& surfaces, std::uint32_t map,
                                QuadLight& light) {
         const TwoClassQuad seen = read_two_class(surfaces, map, at.x, at.y, pixels & at.inside);
         for (std::size_t i = 0; i < 4; ++i)
-            light[i] = light_through({seen.transparent[i].depth, seen.transparent[i].colour},
-                                     {seen.opaque[i].depth, seen.opaque[i].colour}, at.depth[i], light[i]);
+            light[i] = light_through<float>({seen.transparent[i].depth, seen.transparent[i].colour},
+                                            {seen.opaque[i].depth, seen.opaque[i].colour}, at.depth[i], light[i]);
     }
 
     bool inside(std::int32_t x, std::int32_t y) const {

@@ -19,6 +19,9 @@ struct DeferredDraw {
     float opacity = 1.0F;      ///< of a transmitting material; scales the alpha of its colour
     bool double_sided = false; ///< its back faces are lit as well, from behind
     bool mirrored = false;     ///< its front faces are clockwise
+
+    /// Its normals are, on triangles that face the screen like that.
+    bool turned_over(bool front) const { return double_sided && front == mirrored; }
 };
 std::vector<DeferredDraw> deferred_draws(const pipeline::Frame& frame);
 

@@ -100,7 +100,7 @@ double SpotLight::arrives(const glm::dvec3& at) const {
 
 pipeline::View SpotLight::view(std::uint32_t map_size) const {
     return {glm::mat4(glm::lookAtRH(place, place + direction, across(direction))),
-            glm::mat4(glm::perspectiveRH_NO(2.0 * outer, 1.0, range / 1000.0, range)), map_size, map_size};
+            glm::mat4(glm::perspectiveRH_NO(2.0 * outer, 1.0, lamp(), range)), map_size, map_size};
 }
 
 glm::dmat4 SpotLight::volume() const {

@@ -22,7 +22,9 @@ struct SpotLight {
 
     /// The share of its light that arrives at a point, in [0,1].
     double arrives(const glm::dvec3& at) const;
-    /// Of its shadow map; depths from a thousandth of the range to the range.
+    /// What is nearer casts no shadow.
+    double lamp() const { return range / 1000.0; }
+    /// Of its shadow map; depths from lamp() to the range.
     pipeline::View view(std::uint32_t map_size) const;
     /// Takes the cone of add_light_volumes() to the one that encloses all that it lights.
     glm::dmat4 volume() const;

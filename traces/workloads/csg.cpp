@@ -78,8 +78,8 @@ TruthMethod truth(const Scene&, const pipeline::Frame& frame, const CsgParams& p
     method.finish = [solid](const pipeline::Frame& drawn, TruthPicture& picture) {
         picture.colours = shaded(drawn, *solid);
     };
-    method.rasterized = [expression](const pipeline::Frame& drawn, std::span<const float> kbuffer) {
-        return distances_of(csg_surface(drawn, kbuffer, *expression));
+    method.rasterized = [expression](const pipeline::Frame& drawn, const pipeline::FinishedSurfaces& surfaces) {
+        return distances_of(csg_surface(drawn, surfaces.kbuffer, *expression));
     };
     return method;
 }

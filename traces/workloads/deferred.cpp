@@ -11,6 +11,7 @@
 #include "pipeline/functional/eye_depth.hpp"
 #include "sim/check.hpp"
 #include "traces/deferred/shaders.hpp"
+#include "traces/deferred/truth.hpp"
 #include "traces/pass_graph.hpp"
 #include "traces/workloads/methods.hpp"
 
@@ -50,6 +51,7 @@ struct DeferredParams {
     float ambient = 0.1F;
     float specular = 0.3F;
     float specular_power = 32.0F;
+    TruthFilter truth_filter = TruthFilter::nearest;
 
     static constexpr auto fields() {
         using P = DeferredParams;
@@ -75,7 +77,10 @@ struct DeferredParams {
             sim::field<&P::intensity>("of each light").range(0.0, 1000.0),
             sim::field<&P::ambient>("light that reaches every surface").range(0.0F, 1.0F),
             sim::field<&P::specular>("of all surfaces").range(0.0F, 1.0F),
-            sim::field<&P::specular_power>("of all surfaces").range(0.0F, 255.0F));
+            sim::field<&P::specular_power>("of all surfaces").range(0.0F, 255.0F),
+            sim::field<&P::truth_filter>("panes between a light and a point that ray-traced truth looks through. "
+                                         "nearest: the one next to the light, as shadow maps do; product: all. No "
+                                         "method's picture depends on it"));
     }
 };
 static_assert(sim::fully_described<DeferredParams>);
@@ -338,15 +343,38 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const Defe
     return DeferredGraph(scene, std::move(frame), params).lower();
 }
 
+TruthMethod truth(const Scene& scene, const pipeline::Frame& frame, const DeferredParams& params) {
+    TruthMethod method = deferred_truth(scene, frame,
+                                        {spot_lights(scene, params.lights),
+                                         params.shadows,
+                                         params.truth_filter,
+                                         {params.refraction, params.refraction_coefficient},
+                                         params.intensity,
+                                         static_cast<double>(params.ambient),
+                                         static_cast<double>(params.specular),
+                                         static_cast<double>(params.specular_power)});
+    DeferredParams known = params; // without what rays have no use for
+    const DeferredParams usual;
+    known.method = usual.method;
+    known.map_size = usual.map_size;
+    known.bias = usual.bias;
+    known.slope_bias = usual.slope_bias;
+    method.key = key_of(sim::DescribedRef(known));
+    return method;
+}
+
 } // namespace
 
 Workload deferred_workload() {
     Workload workload = make_workload<DeferredParams>(
-        "deferred", "deferred shading of one transparent layer, with coloured shadows and refraction", build);
+        "deferred", "deferred shading of one transparent layer, with coloured shadows and refraction", build, truth);
     workload.quality = {{"method", {"pm", "dp", "fwd", "fw", "kg"}},
                         {"map_size", {"256", "512", "1024", "2048"}},
                         {"shadows", {"none", "opaque", "transparent"}},
                         {"refraction", {"false", "true"}}};
+    workload.examples = {{"truth", "gen:showroom --workload deferred --check --out truth"},
+                         {"accuracy", "gen:showroom --workload deferred --sweep method=pm,dp,fwd,fw --out accuracy"},
+                         {"accuracy", "gen:showroom --workload deferred --set workload.truth_filter=product"}};
     return workload;
 }
 

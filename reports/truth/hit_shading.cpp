@@ -8,13 +8,22 @@ namespace reports {
 
 namespace {
 
-pipeline::ShaderOptions shader_options(const pipeline::Frame& frame) {
-    return {.colours = frame.needs.colours,
-            .normals = frame.needs.fragment_normals,
-            .fragment_colour = frame.needs.fragment_colour,
+/// What the fragments of each draw are asked for: by the shader of the pass that draws it, or by the whole frame.
+std::vector<pipeline::Needs> needs_of_draws(const pipeline::Frame& frame) {
+    std::vector<pipeline::Needs> needs(frame.draws.size(), frame.needs);
+    for (const pipeline::Pass& pass : frame.passes)
+        if (pass.shader != nullptr && (pass.runs_program() || pass.writes_depth()))
+            for (const std::uint32_t draw : pass.draws) needs[draw] = frame.needs_of(pass);
+    return needs;
+}
+
+pipeline::ShaderOptions shader_options(const pipeline::Frame& frame, const pipeline::Needs& needs) {
+    return {.colours = needs.colours,
+            .normals = needs.fragment_normals,
+            .fragment_colour = needs.fragment_colour,
             .perspective = frame.view.projection[2][3] != 0.0F,
-            .textures = frame.needs.textures,
-            .alpha_test = frame.needs.alpha_test};
+            .textures = needs.textures,
+            .alpha_test = needs.alpha_test};
 }
 
 /// The pixel's place in its 2x2 block.
@@ -32,11 +41,14 @@ pipeline::CornerWeights own_weights(const RayHit& hit) {
 
 HitShading::HitShading(const pipeline::Frame& frame, const RayScene& scene, const PixelRays& rays)
     : scene_(scene), rays_(rays), to_world_(glm::transpose(glm::dmat3(glm::dmat4(frame.view.view)))) {
-    for (const pipeline::Draw& draw : scene.draws())
+    const std::vector<pipeline::Needs> needs = needs_of_draws(frame);
+    for (std::size_t i = 0; i < needs.size(); ++i) {
+        const pipeline::Draw& draw = scene.draws()[i];
         for (const glm::mat4& model : draw.instances)
             shaders_.emplace_back(scene.resources(), scene.resources().geometries[draw.geometry],
                                   scene.resources().materials[draw.material], frame.view.view * model,
-                                  shader_options(frame));
+                                  shader_options(frame, needs[i]));
+    }
 }
 
 // Where a neighbour's ray misses the plane, or meets it behind the eye or far away, it takes the hit's own weights: no

@@ -43,7 +43,7 @@ Truth truth_of(const Replay& replay) {
     const traces::TruthMethod method =
         traces::truth_method(replay.scene, replay.frame, "deferred", traces::WorkloadOptions::of(replay.options.knobs));
     const reports::RayScene scene(method.frame->resources, method.frame->draws);
-    return reports::trace_truth(*method.frame, scene, method, {.layers = 1});
+    return reports::trace_truth(*method.frame, scene, method);
 }
 
 bool sees_pane(const Truth& truth, std::size_t pixel) { return truth.channels[transparent].has(pixel); }

@@ -15,7 +15,7 @@ using pipeline::Frame;
 using pipeline::Pass;
 using pipeline::SurfaceFormat;
 using Settings = std::vector<std::string>;
-using support::colours;
+using support::colours_named;
 using support::Replay;
 using support::surfaces_of;
 
@@ -99,7 +99,7 @@ TEST(Deferred, S003_D9_NoTransparentTexelOnAnEvenRow) {
     const Replay replay = deferred({"lights=1"});
     const pipeline::SurfaceStore surfaces = surfaces_of(replay);
     for (const char* name : {"colours", "shadow colours"}) {
-        const std::vector<float> texels = support::colours_named(replay, surfaces, name);
+        const std::vector<float> texels = colours_named(replay, surfaces, name);
         const std::size_t row = std::string(name) == "colours" ? width : 64;
         std::size_t transparent = 0;
         for (std::size_t i = 0; i < texels.size() / 4; ++i) {
@@ -147,7 +147,7 @@ TEST(Deferred, S003_D15_InterlacingChangesTransparentPixelsAndTheirBordersOnly) 
     Settings whole = common;
     whole.emplace_back("method=dp");
     const Replay pm = deferred(common), dp = deferred(whole);
-    const std::vector<float> nearest = support::colours_named(dp, surfaces_of(dp), "colours");
+    const std::vector<float> nearest = colours_named(dp, surfaces_of(dp), "colours");
     const auto pane = [&](std::size_t x, std::size_t y) { return nearest[(y * width + x) * 4 + 3] < 1.0F; };
     std::size_t differing = 0, equal_panes = 0;
     for (std::size_t y = 0; y < height; ++y)
@@ -225,7 +225,7 @@ TEST(Deferred, ForwardRenderingGivesTheSamePictureButForRounding) {
 
 TEST(Deferred, WithoutLightsOnlyTheAmbientIsLeft) {
     const Replay replay = deferred({"lights=0", "ambient=0.5", "refraction=false"}, "gen:showroom?transparent=0");
-    const std::vector<float> surface = support::colours_named(replay, surfaces_of(replay), "colours");
+    const std::vector<float> surface = colours_named(replay, surfaces_of(replay), "colours");
     for (std::size_t i = 0; i < surface.size(); i += 4)
         for (std::size_t c = 0; c < 3; ++c)
             EXPECT_NEAR(replay.reference.colour[i + c], surface[i + c] * 128.0F / 255.0F, 0.5F / 255.0F);

@@ -1,5 +1,6 @@
 // Deferred shading beside its ray-traced truth (specification 003, sections 4 and 6.8, check 14).
 #include "pipeline/functional/eye_depth.hpp"
+#include "pipeline/functional/surface_values.hpp"
 #include "reports/truth/truth.hpp"
 #include "tests/support/box_ray.hpp"
 #include "tests/support/frame_surfaces.hpp"
@@ -79,6 +80,7 @@ Distance expected(const Truth& truth, std::size_t pixel, Channel channel) {
     return truth.channels[channel].values[pixel];
 }
 Distance opaque_at(const Truth& truth, std::size_t pixel) { return expected(truth, pixel, opaque); }
+Distance transparent_at(const Truth& truth, std::size_t pixel) { return expected(truth, pixel, transparent); }
 Distance nearest_at(const Truth& truth, std::size_t pixel) {
     return expected(truth, pixel, sees_pane(truth, pixel) ? transparent : opaque);
 }
@@ -90,30 +92,41 @@ struct Kept {
     std::size_t first_row, rows;
     Distance (*expected)(const Truth&, std::size_t);
     bool behind_panes_only;
+    std::size_t stride = 4, place = 0; ///< floats of a texel, and where among them the depth is
 };
 
+/// Of a colour surface, or of a k-buffer.
+std::vector<float> floats_of(const Replay& replay, const std::string& name) {
+    const pipeline::SurfaceStore surfaces = surfaces_of(replay);
+    return name == "kbuffer" ? entries_of(surfaces, replay.frame.main_kbuffer())
+                             : colours_named(replay, surfaces, name);
+}
+
 // Predicted: nothing but rounding. Rows of pm hold what the parity says; dp holds the nearest of all and, behind panes,
-// what is opaque.
+// what is opaque; kg holds both classes everywhere.
 TEST_F(DeferredTruth, S003_D14_DepthsAreThoseOfRays) {
     for (const Kept& kept :
          {Kept{"method=pm", "depths", 0, 2, opaque_at, false}, Kept{"method=pm", "depths", 1, 2, nearest_at, false},
           Kept{"method=dp", "depths", 0, 1, nearest_at, false},
-          Kept{"method=dp", "depths behind", 0, 1, opaque_at, true}}) {
+          Kept{"method=dp", "depths behind", 0, 1, opaque_at, true},
+          Kept{"method=kg", "kbuffer", 0, 1, opaque_at, false, 8, 7},
+          Kept{"method=kg", "kbuffer", 0, 1, transparent_at, false, 8, 3}}) {
         SCOPED_TRACE(testing::Message() << kept.method << ' ' << kept.surface << " from row " << kept.first_row);
         const Replay replay = drawn({"lights=0", kept.method}, 320, 240);
         const Truth truth = truth_of(replay);
         const pipeline::EyeDepth eye(replay.frame.view.projection);
-        const std::vector<float> texels = colours_named(replay, surfaces_of(replay), kept.surface);
+        const std::vector<float> texels = floats_of(replay, kept.surface);
         std::size_t compared = 0, right = 0;
         for (std::size_t pixel = 0; pixel < truth.pixels(); ++pixel) {
             const std::size_t row = pixel / truth.width;
             if (row % kept.rows != kept.first_row || truth.doubtful(pixel)) continue;
             if (kept.behind_panes_only && !sees_pane(truth, pixel)) continue;
             const Distance known = kept.expected(truth, pixel);
-            const bool has = texels[pixel * 4] < 1.0F;
+            const float depth = texels[pixel * kept.stride + kept.place];
+            const bool has = depth < 1.0F;
             if (!known && !has) continue;
             ++compared;
-            const double distance = eye.distance(texels[pixel * 4]);
+            const double distance = eye.distance(depth);
             right += known && has && std::abs(distance - *known) <= 1e-4 * *known ? 1 : 0;
         }
         EXPECT_GT(compared, 3000U);

@@ -32,9 +32,13 @@ void Machine::link() {
     sim::connect(units.scheduler->order_out, units.reorder_buffer->order_in,
                  {1, order_width, in_order ? gpu_.reorder_quads() : 4 * order_width});
     const sim::Cycle cross = gpu_.crossbar.latency;
+    // Two tiles wait in front of a pipe, so that the others get theirs meanwhile.
+    const std::uint32_t tile = gpu_.scheduler.tile;
+    const sim::ChannelConfig to_pipe = tile == 0 ? sim::ChannelConfig{1, 1, 4}
+                                                 : sim::ChannelConfig{1, width, std::max(tile * tile / 2, 4 * width)};
     for (std::uint32_t pipe = 0; pipe < pipes; ++pipe) {
         FragmentPipeline& unit = units.pipes[pipe];
-        sim::connect(units.scheduler->pipes_out[pipe], unit.quads_in, {1, 1, 4});
+        sim::connect(units.scheduler->pipes_out[pipe], unit.quads_in, to_pipe);
         sim::connect(unit.done_out, units.reorder_buffer->completions_in[pipe], {1, 1, 4});
         if (textures_linked_) units.memory.attach(unit.textures_out, unit.textures_in);
         if (units.locks) {

@@ -65,8 +65,9 @@ bool FragmentScheduler::take_commits() {
 
 bool FragmentScheduler::choose_pipe(const Quad& quad) {
     const auto pipes = static_cast<std::uint32_t>(pipes_out.size());
-    if (plan_->policy == DispatchPolicy::tile_affinity) {
-        chosen_pipe_ = (quad.x / 8U + 3U * (quad.y / 8U)) % pipes;
+    const std::uint32_t tile = plan_->policy == DispatchPolicy::tile_affinity ? 8 : params_.tile;
+    if (tile != 0) {
+        chosen_pipe_ = (quad.x / tile + 3U * (quad.y / tile)) % pipes;
         return pipes_out[chosen_pipe_].ready();
     }
     for (std::uint32_t n = 0; n < pipes; ++n) {

@@ -201,16 +201,26 @@ struct Parser {
                      geometry);
 
         command = app.add_subcommand("validate", "The model beside published measurements");
-        command->add_option("target", validate.target, "What to validate: geometry or peeling")
+        command->add_option("target", validate.target, "What to validate: geometry, peeling or deferred")
             ->required()
             ->type_name("WHAT");
         command->add_flag("--leave-one-out", validate.leave_one_out,
                           "Also how predictions move when other rows determine the calibrated numbers");
+        command
+            ->add_option("--lights", validate.lights,
+                         "deferred: frames with these numbers of lights, separated by commas (default: all that were "
+                         "measured)")
+            ->type_name("NUMBERS");
+        command
+            ->add_option("--size", validate.size,
+                         "deferred: pixels of the picture; shadow maps shrink with it (default: as measured)")
+            ->type_name("WxH");
         command->add_option("--out", validate.directory, "Folder for validation.json, tables and a page")
             ->type_name("DIR");
         add_measure(
             *command, validate, validate_help,
-            "geometry: estimate or detailed (default detailed); peeling: sampled or detailed (default sampled)");
+            "geometry: estimate or detailed (default detailed); peeling: sampled or detailed (default sampled); "
+            "deferred: detailed");
 
         command = app.add_subcommand("calibrate", "Fit numbers of GPU files to published measurements");
         command->add_option("target", calibrate.target, "What to calibrate: geometry or peeling")

@@ -71,7 +71,7 @@ _ropsim() {
         geometry)
             [[ $word == -* ]] && _ropsim_words "--gpu --prepare --submission --reads --fidelity --seed --set --export --out --json --help" ||
                 _ropsim_files glb gltf ;;
-        validate) [[ $word == -* ]] && _ropsim_words "--leave-one-out --out $measure" || _ropsim_words "geometry peeling" ;;
+        validate) [[ $word == -* ]] && _ropsim_words "--leave-one-out --lights --size --out $measure" || _ropsim_words "geometry peeling deferred" ;;
         calibrate) [[ $word == -* ]] && _ropsim_words "--write --folds --seed --out $measure" || _ropsim_words "geometry peeling" ;;
         study) [[ $word == -* ]] && _ropsim_words "--out $measure" || _ropsim_words "$(_ropsim_names studies)" ;;
         stability) _ropsim_words "--filter --out --json --no-images --help" ;;

@@ -47,7 +47,8 @@ inline constexpr const char* geometry_help = R"(Examples:
 inline constexpr const char* validate_help = R"(Examples:
   ropsim validate geometry
   ropsim validate geometry --gpus g70,r420 --leave-one-out --out validation
-  ropsim validate peeling --out peeling)";
+  ropsim validate peeling --out peeling
+  ropsim validate deferred --gpus gtx760 --lights 2,4 --out deferred)";
 
 inline constexpr const char* calibrate_help = R"(Examples:
   ropsim calibrate geometry                      what the measurements say, beside what the files say

@@ -28,12 +28,9 @@ std::optional<Number> parse(std::string_view text) {
 
 template <class Request>
 void parse_size(const std::string& text, Request& request) {
-    const auto size = reports::frame_size(text);
-    if (!size)
-        throw sim::InputError(fmt::format("--size: expected WIDTHxHEIGHT with 1 to {} pixels each, got '{}'",
-                                          reports::largest_side, text));
-    request.width = size->width;
-    request.height = size->height;
+    const reports::FrameSize size = size_of(text);
+    request.width = size.width;
+    request.height = size.height;
 }
 
 std::uint32_t parse_samples(const std::string& text) {
@@ -288,6 +285,25 @@ std::uint64_t seed_of(const std::string& text) { return parse_seed(text); }
 
 std::vector<std::string> list_of(const std::string& text) {
     return text.empty() ? std::vector<std::string>{} : split(text, "--gpus");
+}
+
+std::vector<std::uint32_t> lights_of(const std::string& text) {
+    std::vector<std::uint32_t> counts;
+    if (text.empty()) return counts;
+    for (const std::string& one : split(text, "--lights")) {
+        const auto count = parse<std::uint32_t>(one);
+        if (!count) throw sim::InputError(fmt::format("--lights: expected numbers of lights, got '{}'", one));
+        counts.push_back(*count);
+    }
+    return counts;
+}
+
+reports::FrameSize size_of(const std::string& text) {
+    const auto size = reports::frame_size(text);
+    if (!size)
+        throw sim::InputError(fmt::format("--size: expected WIDTHxHEIGHT with 1 to {} pixels each, got '{}'",
+                                          reports::largest_side, text));
+    return *size;
 }
 
 } // namespace cli

@@ -3,6 +3,7 @@
 
 #include "reports/accuracy/accuracy.hpp"
 #include "reports/comparison.hpp"
+#include "reports/frame_size.hpp"
 #include "reports/geometry/advice.hpp"
 #include "reports/peeling/validation.hpp"
 #include "reports/sensitivity/sensitivity.hpp"
@@ -132,6 +133,7 @@ struct MeasureCommand {
 struct ValidateCommand : MeasureCommand {
     ValidateCommand() { fidelity.clear(); } ///< the usual one depends on the target
     bool leave_one_out = false;
+    std::string lights, size; ///< of --lights and --size; empty: as measured
 };
 struct CalibrateCommand : MeasureCommand {
     CalibrateCommand() { fidelity.clear(); } ///< the usual one depends on the target
@@ -175,5 +177,9 @@ unsigned threads_of(const std::string& text);
 unsigned folds_of(const std::string& text);
 std::uint64_t seed_of(const std::string& text);
 std::vector<std::string> list_of(const std::string& text);
+/// Of --lights: numbers of lights, separated by commas.
+std::vector<std::uint32_t> lights_of(const std::string& text);
+/// Of --size: WxH.
+reports::FrameSize size_of(const std::string& text);
 
 } // namespace cli

@@ -24,6 +24,16 @@ Load nearest_surface_load();
 /// Every fragment blended by the fixed-function ROP, into a colour format.
 Load blending_load(const std::string& colour_format);
 
+/// One transparent layer over what lies behind it, in the light of spot lights (specification 003).
+struct OnePaneFrame {
+    std::string method;  ///< "pm", "dp", "fwd", "fw"
+    std::string shadows; ///< "none", "opaque", "transparent"
+    bool refraction = true;
+    std::uint32_t lights = 0;
+    std::uint32_t map_size = 1024; ///< texels
+};
+Load one_pane_load(const OnePaneFrame& frame);
+
 /// Programs over the samples of a scalar field along each pixel's ray: an integral (A16), crossings of iso-values
 /// (A15).
 Load ray_integral_load();

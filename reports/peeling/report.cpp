@@ -5,9 +5,9 @@
 #include "reports/result.hpp"
 #include "reports/text_table.hpp"
 #include "reports/validation/error_report.hpp"
+#include "reports/validation/misses.hpp"
 #include "reports/validation/null_models.hpp"
 
-#include <algorithm>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -67,32 +67,10 @@ std::string numbers_html(const PeelingValidation& validation) {
                       rows);
 }
 
-/// Numbers that are missed for one reason.
-struct Misses {
-    std::string numbers, reason;
-};
-
-std::vector<Misses> large_misses(const PeelingValidation& validation) {
-    std::vector<Misses> all;
-    for (const PeelingNumber& one : validation.numbers) {
-        if (!one.row.missed()) continue;
-        const std::string name = fmt::format("{} ({})", one.row.row, row_status_text(one.row));
-        const std::string reason = one.row.explanation.empty() ? "not explained" : one.row.explanation;
-        const auto same =
-            std::find_if(all.begin(), all.end(), [&](const Misses& miss) { return miss.reason == reason; });
-        if (same == all.end())
-            all.push_back({name, reason});
-        else
-            same->numbers += "; " + name;
-    }
-    return all;
-}
-
-std::string misses_html(const PeelingValidation& validation) {
-    std::string html;
-    for (const Misses& miss : large_misses(validation))
-        html += fmt::format("<p><b>{}</b>: {}</p>\n", escape_html(miss.numbers), escape_html(miss.reason));
-    return html.empty() ? "<p>None.</p>\n" : html;
+std::vector<Misses> peeling_misses(const PeelingValidation& validation) {
+    std::vector<ValidationRow> rows;
+    for (const PeelingNumber& one : validation.numbers) rows.push_back(one.row);
+    return large_misses(rows, [](const ValidationRow& row) { return row.row; });
 }
 
 } // namespace
@@ -105,9 +83,7 @@ std::string peeling_text(const PeelingValidation& validation, TerminalStyle styl
                         rate_number(row.model), line_text(one), error_text(row.log_error()), error_in_sigma_text(row),
                         row_status_text(row), null_text(row), row.parameter});
     }
-    std::string explanations;
-    for (const Misses& miss : large_misses(validation))
-        explanations += wrap(fmt::format("  {}: {}", miss.numbers, miss.reason), style.columns, 4);
+    const std::string explanations = misses_text(peeling_misses(validation), style);
     std::string text =
         wrap(fmt::format("Depth peeling on {} as published ({}) and on the model, {}. {} Line: how far the line "
                          "through the stand-ins may miss the whole mesh, if its slope goes on changing as it did "
@@ -175,7 +151,7 @@ std::string peeling_page(const PeelingValidation& validation) {
     return plot_page("Depth peeling: model and measurements", intro, {peeling_errors(validation)},
                      {{"Errors, in natural logarithms", error_summary_html({validation.summary})},
                       {"Numbers", numbers_html(validation)},
-                      {"Misses above 25%", misses_html(validation)}});
+                      {"Misses above 25%", misses_html(peeling_misses(validation))}});
 }
 
 } // namespace reports

@@ -53,4 +53,9 @@ void apply_peeling_null_model(std::vector<ValidationRow>& rows, const std::vecto
     }
 }
 
+void apply_constant_null_model(std::vector<ValidationRow>& rows, double frames_per_second) {
+    for (ValidationRow& row : rows)
+        if (printed(row)) row.null_model = frames_per_second;
+}
+
 } // namespace reports

@@ -163,6 +163,7 @@ TEST(SourceTree, OnlyTracesNamesWorkloads) {
         {{"reports/peeling/published.hpp", "volume"}, "how a mesh grows"},
         {{"cli/calibrate.cpp", "geometry"}, "what is calibrated"},
         {{"cli/validate.cpp", "geometry"}, "what is validated"},
+        {{"cli/validate.cpp", "deferred"}, "what is validated"},
         {{"cli/command_line.cpp", "geometry"}, "a subcommand"},
     };
     auto unused = allowed;

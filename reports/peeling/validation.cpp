@@ -116,13 +116,13 @@ class RowNumbers {
     std::vector<PeelingNumber> numbers_;
 };
 
-struct Job {
+struct PeelingJob {
     std::size_t row = 0;
     std::uint64_t triangles = 0;
 };
 
-std::vector<Job> jobs_of(const PublishedPeeling& published, PeelingFidelity fidelity) {
-    std::vector<Job> jobs;
+std::vector<PeelingJob> jobs_of(const PublishedPeeling& published, PeelingFidelity fidelity) {
+    std::vector<PeelingJob> jobs;
     for (std::size_t row = 0; row < published.rows.size(); ++row) {
         const PeelingDataset& dataset = published.dataset(published.rows[row].dataset);
         for (const std::uint64_t size : peeling_sizes(dataset, fidelity)) jobs.push_back({row, size});
@@ -174,7 +174,7 @@ ErrorSummary summarise_peeling(std::vector<PeelingNumber>& numbers) {
 }
 
 PeelingValidation validate_peeling(const PublishedPeeling& published, const PeelingOptions& options) {
-    const std::vector<Job> jobs = jobs_of(published, options.fidelity);
+    const std::vector<PeelingJob> jobs = jobs_of(published, options.fidelity);
     std::vector<StandInRun> runs(jobs.size());
     std::size_t done = 0;
     std::mutex mutex;

@@ -33,6 +33,10 @@ std::string verdict_text(const ValidationRow& row) {
 
 std::string full_name(const ValidationRow& row) { return row.key() + " on " + row.gpu; }
 
+std::vector<Misses> deferred_misses(const DeferredValidation& validation) {
+    return validation.as_measured ? large_misses(validation.rows, full_name) : std::vector<Misses>{};
+}
+
 std::string intro_text(const DeferredValidation& validation) {
     return fmt::format("Deferred shading with one transparent layer and its rivals as published ({}) and on the model, "
                        "{}x{} pixels, maps of {}x{} texels. {} Limit: what took the largest share of the time. ",
@@ -96,7 +100,7 @@ std::string deferred_text(const DeferredValidation& validation, TerminalStyle st
              style.columns, 0) +
         "\n" + error_summary_text(validation.summary, style) + "\n" +
         wrap(error_sentences(validation.summary.back()), style.columns, 0);
-    const std::string explanations = misses_text(large_misses(validation.rows, full_name), style);
+    const std::string explanations = misses_text(deferred_misses(validation), style);
     if (!explanations.empty()) text += "\nMisses above 25%:\n" + explanations;
     return text;
 }
@@ -142,7 +146,7 @@ std::string deferred_page(const DeferredValidation& validation) {
     return plot_page("Deferred shading: model and measurements", intro, {errors_plot(validation)},
                      {{"Errors, in natural logarithms", error_summary_html(validation.summary)},
                       {"Numbers", rows_html(validation)},
-                      {"Misses above 25%", misses_html(large_misses(validation.rows, full_name))}});
+                      {"Misses above 25%", misses_html(deferred_misses(validation))}});
 }
 
 } // namespace reports

@@ -176,10 +176,10 @@ DeferredValidation validate_deferred(const PublishedDeferred& published, const D
     validation.parameter = published.calibrated.parameter;
     validation.size = size_of(published, options);
     validation.map_size = map_size_of(published, options);
+    validation.as_measured = validation.size.width == published.width && validation.size.height == published.height;
     validation.rows = deferred_target_rows(published);
     for (ValidationRow& row : deferred_rows(published, runs)) {
-        const bool as_measured = validation.size.width == published.width && validation.size.height == published.height;
-        if (!as_measured && row.status != RowStatus::derived) {
+        if (!validation.as_measured && row.status != RowStatus::derived) {
             row.status = RowStatus::derived;
             row.source = "of a larger picture";
         }

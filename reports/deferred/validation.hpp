@@ -39,6 +39,7 @@ struct DeferredValidation {
     std::string source, parameter; ///< what the calibrated row decides
     FrameSize size;
     std::uint32_t map_size = 0;
+    bool as_measured = true;         ///< the size is the published one; at another no row says how good the model is
     std::vector<ValidationRow> rows; ///< render targets, columns, what follows from them
     std::vector<ErrorSummary> summary;
     double host_seconds = 0; ///< of all runs, one after the other

@@ -373,7 +373,7 @@ Workload deferred_workload() {
                         {"shadows", {"none", "opaque", "transparent"}},
                         {"refraction", {"false", "true"}}};
     workload.examples = {{"truth", "gen:showroom --workload deferred --check --out truth"},
-                         {"accuracy", "gen:showroom --workload deferred --sweep method=pm,dp,fwd,fw --out accuracy"},
+                         {"accuracy", "gen:showroom --workload deferred --sweep method=pm,dp,fwd,fw,kg --out accuracy"},
                          {"accuracy", "gen:showroom --workload deferred --set workload.truth_filter=product"}};
     return workload;
 }

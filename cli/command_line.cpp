@@ -56,7 +56,10 @@ void add_truth(CLI::App& command, TruthCommand& options) {
 
 void add_accuracy(CLI::App& command, AccuracyCommand& options) {
     add_frame_options(command, options.frame);
-    command.add_option("--design", options.design, "Design that runs the frames, NAME?key=value (default multipass)")
+    command
+        .add_option("--design", options.design,
+                    "Design that runs the frames, NAME?key=value (default multipass; blender or interlock where the "
+                    "one before cannot)")
         ->type_name("NAME");
     command
         .add_option("--sweep", options.sweep,

@@ -232,8 +232,13 @@ reports::AccuracyRequest request_of(const AccuracyCommand& command) {
     constexpr std::uint32_t most_rays = 1'000'000, most_lights = 4096;
     reports::AccuracyRequest request;
     request.comparison = request_of(command.frame, command.design);
-    if (request.comparison.designs.size() != 1)
+    if (command.design.empty()) {
+        request.comparison.designs = {"multipass", "blender", "interlock"};
+        request.comparison.only_able_designs = false;
+        request.comparison.first_able_design = true;
+    } else if (request.comparison.designs.size() != 1) {
         throw sim::InputError(fmt::format("--design: expected one design, got '{}'", command.design));
+    }
     for (const std::string& sweep : command.sweep) {
         const std::size_t equals = sweep.find('=');
         if (equals == 0 || equals == std::string::npos)

@@ -97,7 +97,7 @@ struct TruthCommand {
 struct AccuracyCommand {
     FrameOptions frame;
     OutputOptions output;
-    std::string design = "multipass";
+    std::string design;             ///< empty: the first of some that can run a frame
     std::vector<std::string> sweep; ///< KNOB=VALUE,VALUE
     std::string rays = "1000";
     std::string against;  ///< "KEY=VALUE KEY=VALUE"; empty: ray-traced truth

@@ -191,7 +191,8 @@ ComparisonInput prepare(const ComparisonRequest& request, const Supervision& sup
     input.gpu = std::move(hardware.gpu);
     input.designs = std::move(hardware.designs);
     read_scene(request, input);
-    check_designs(input, request.only_able_designs);
+    check_designs(input, request.only_able_designs || request.first_able_design);
+    if (request.first_able_design) input.designs.erase(input.designs.begin() + 1, input.designs.end());
     if (request.equal_area) fit_to_area(input, *request.equal_area);
     check_memory(input, request);
     enter(supervision, Progress::Phase::shading);

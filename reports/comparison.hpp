@@ -31,6 +31,7 @@ struct ComparisonRequest {
     std::vector<std::string> gpu_settings; ///< "section.key=value"; also parameters of designs
     std::vector<std::string> designs;      ///< at least one, each a DesignVariant, no duplicates
     bool only_able_designs = false;        ///< leave out those that cannot run the frame's program, instead of ending
+    bool first_able_design = false;        ///< ... and all but the first of the others
     /// Every design has so many bytes on chip, its tile caches what is left beside all else; 0: as many as the largest.
     std::optional<std::uint64_t> equal_area;
     std::uint64_t seed = 1;

@@ -103,13 +103,14 @@ void judge(const AccuracyRequest& request, const FramePixels& pixels, const pipe
     if (request.pictures) point.picture = picture_error_picture(pixels.composite, truth, point.name());
 }
 
+bool is_listed(const std::vector<std::string>& list, const std::string& text) {
+    return std::find(list.begin(), list.end(), text) != list.end();
+}
+
 // What the method did not do as asked for, besides what is known of the scene.
 void add_notes(const SceneFacts& drawn, Accuracy& accuracy) {
-    const auto knows = [](const std::vector<std::string>& notes, const std::string& note) {
-        return std::find(notes.begin(), notes.end(), note) != notes.end();
-    };
     for (const std::string& note : drawn.notes)
-        if (!knows(accuracy.scene.notes, note) && !knows(accuracy.notes, note)) accuracy.notes.push_back(note);
+        if (!is_listed(accuracy.scene.notes, note) && !is_listed(accuracy.notes, note)) accuracy.notes.push_back(note);
 }
 
 Comparison run_of(ComparisonRequest request, const Knobs& knobs, const Supervision& supervision, Accuracy& accuracy) {
@@ -124,6 +125,7 @@ AccuracyPoint point_of(const AccuracyRequest& request, const Knobs& knobs, const
     const pipeline::RunResult& run = comparison.runs.front();
     AccuracyPoint point;
     point.workload = comparison.frame->workload;
+    point.design = comparison.variants.front().label;
     point.knobs = knobs;
     point.sim_ms = static_cast<double>(run.cycles) / (run.core_mhz * 1000.0);
     point.host_s = run.host_seconds + comparison.host.front_end_seconds;
@@ -227,7 +229,6 @@ Accuracy measure_accuracy(const AccuracyRequest& request, const Supervision& sup
     const std::vector<Knobs> points = plan(request);
     Accuracy accuracy;
     accuracy.workload = request.comparison.workload.name();
-    accuracy.design = request.comparison.designs.front();
     accuracy.gpu = request.comparison.gpu;
     accuracy.width = request.comparison.width;
     accuracy.height = request.comparison.height;
@@ -256,6 +257,9 @@ Accuracy measure_accuracy(const AccuracyRequest& request, const Supervision& sup
         accuracy.points.push_back(point_of(request, request.against->settings, *rival, standard));
         accuracy.points.back().rival = true;
     }
+    for (const AccuracyPoint& point : accuracy.points)
+        if (!point.design.empty() && !is_listed(accuracy.designs, point.design))
+            accuracy.designs.push_back(point.design);
     mark_pareto(accuracy.points);
     return accuracy;
 }

@@ -27,7 +27,8 @@ struct Rival {
 };
 
 struct AccuracyRequest {
-    ComparisonRequest comparison;           ///< one design; its workload settings are those that all points share
+    ComparisonRequest
+        comparison; ///< one design, or the first able of several; its workload settings are those that all points share
     std::vector<traces::QualityKnob> sweep; ///< every combination; empty: each knob of the workload alone
     LightSampling sampling;                 ///< of the truth, where the workload has a light
     std::optional<Rival> against;           ///< nothing: pictures are measured against ray-traced truth
@@ -39,6 +40,7 @@ struct AccuracyRequest {
 
 struct AccuracyPoint {
     std::string workload;
+    std::string design;             ///< that ran it
     bool rival = false;             ///< what the others are measured against
     std::vector<std::string> knobs; ///< "name=value", what differs from the shared settings
     double sim_ms = 0;              ///< of a frame on the simulated GPU
@@ -53,7 +55,8 @@ struct AccuracyPoint {
 };
 
 struct Accuracy {
-    std::string workload, design, gpu;
+    std::string workload, gpu;
+    std::vector<std::string> designs; ///< that ran points, in their order
     SceneFacts scene;
     std::uint32_t width = 0, height = 0;
     std::vector<std::string> settings; ///< shared by all points

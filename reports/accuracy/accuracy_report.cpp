@@ -78,7 +78,7 @@ std::string how_measured(const Accuracy& accuracy) {
     const ImageError& first = accuracy.points.front().error;
     std::string text =
         fmt::format("{}: {} x {}, {}, design {} on {}, beside {}", accuracy.scene.name, accuracy.width, accuracy.height,
-                    accuracy.workload, accuracy.design, accuracy.gpu, beside_what(accuracy));
+                    accuracy.workload, fmt::join(accuracy.designs, ", "), accuracy.gpu, beside_what(accuracy));
     if (!accuracy.settings.empty()) text += fmt::format("; {}", fmt::join(accuracy.settings, ", "));
     return text + fmt::format(". {} compared, {} at silhouettes left out.", counted(first.compared, "pixel"),
                               with_commas(first.excluded));
@@ -121,6 +121,7 @@ nlohmann::ordered_json accuracy_json(const Accuracy& accuracy) {
                                     {"worst", point.error.worst},       {"pareto", point.pareto},
                                     {"pareto_host", point.pareto_host}, {"compared", point.error.compared},
                                     {"excluded", point.error.excluded}, {"wrong_pixels", point.wrong_pixels}};
+        if (!point.design.empty()) json["design"] = point.design;
         if (point.rival) json["rival"] = true;
         if (point.error.shadows) {
             json["acne"] = point.error.acne;
@@ -138,7 +139,7 @@ nlohmann::ordered_json accuracy_json(const Accuracy& accuracy) {
           {"height", accuracy.height}}},
         {"workload", accuracy.workload},
         {"settings", accuracy.settings},
-        {"design", accuracy.design},
+        {"designs", accuracy.designs},
         {"gpu", accuracy.gpu},
         {"rays", accuracy.rays},
         {"host", {{"truth_seconds", accuracy.truth_seconds}, {"truth_cached", accuracy.truth_cached}}},

@@ -114,7 +114,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{{"validate", "deferred", "--size", "0x0"}, 1, "'0x0'"},
         Mistake{{"validate", "peeling", "--fidelity", "estimate"}, 1, "expected one of sampled, detailed"},
         Mistake{{"calibrate", "geometry", "--write", "/no/such"}, 1, "--write: /no/such"},
-        Mistake{{"calibrate", "geometri"}, 1, "expected geometry, peeling or deferred, got 'geometri'"},
+        Mistake{{"calibrate", "geometri"}, 1, "expected geometry or peeling, got 'geometri'"},
         Mistake{{"calibrate", "geometry", "--gpus", "g80"}, 1, "'g80' was not measured"},
         Mistake{{"calibrate", "geometry", "--folds", "1"}, 1, "--folds: expected a whole number from 2 to 1000"},
         Mistake{{"calibrate", "geometry", "--folds", "two"}, 1, "--folds"},

@@ -231,6 +231,24 @@ TEST(Deferred, WithoutLightsOnlyTheAmbientIsLeft) {
             EXPECT_NEAR(replay.reference.colour[i + c], surface[i + c] * 128.0F / 255.0F, 0.5F / 255.0F);
 }
 
+TEST(Deferred, LightsOfTheSceneThatDoNotShineAreTold) {
+    traces::Scene scene = traces::load_scene(showroom);
+    const auto notes_with = [&scene](const char* lights) {
+        return traces::build_frame(scene, traces::make_view(scene, "auto", 16, 12), "deferred",
+                                   traces::WorkloadOptions::of({lights}))
+            .notes;
+    };
+    EXPECT_TRUE(notes_with("lights=2").empty());
+    traces::Light sun, spot;
+    sun.kind = traces::LightKind::directional;
+    spot.kind = traces::LightKind::spot;
+    spot.outer_cone = 0.5F;
+    scene.lights = {sun, spot, spot};
+    const std::string told = " of the scene's 3 lights shine: spots only, and as many as asked for";
+    EXPECT_EQ(notes_with("lights=1"), std::vector<std::string>{"1" + told});
+    EXPECT_EQ(notes_with("lights=4"), std::vector<std::string>{"2" + told});
+}
+
 TEST(Deferred, AVolumeHoldsAllThatItsLightReaches) {
     traces::SpotLight light;
     light.place = {1.0, 2.0, 3.0};

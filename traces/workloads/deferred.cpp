@@ -339,6 +339,11 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const Defe
         return frame.resources->geometries[draw.geometry].find(pipeline::Semantic::normal) != nullptr;
     });
     if (!smooth) frame.notes.emplace_back("some draws have no normals: those of their triangles are taken");
+    const auto spots = static_cast<std::size_t>(std::count_if(
+        scene.lights.begin(), scene.lights.end(), [](const Light& light) { return light.kind == LightKind::spot; }));
+    if (const std::size_t taken = std::min<std::size_t>(spots, params.lights); taken != scene.lights.size())
+        frame.notes.push_back(fmt::format("{} of the scene's {} lights shine: spots only, and as many as asked for",
+                                          taken, scene.lights.size()));
     if (params.lights == 0) frame.notes.emplace_back("no lights: surfaces are seen in the ambient light alone");
     return DeferredGraph(scene, std::move(frame), params).lower();
 }

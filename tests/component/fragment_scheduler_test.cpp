@@ -86,6 +86,20 @@ TEST(FragmentScheduler, TileAffinitySendsATileToOnePipe) {
     EXPECT_EQ(bench.scheduler.stats().quads, 128U);
 }
 
+TEST(FragmentScheduler, ATileOfTheGpuGoesToOnePipeInEveryDesign) {
+    for (const std::uint32_t tile : {4U, 8U, 16U}) {
+        KBufferPass pass;
+        pass.quads(4 * 32);
+        SchedulerBench bench(pass, {.scheduler = {.tile = tile}, .pipes = 3});
+        bench.run();
+        ASSERT_EQ(bench.back_end.arrivals.size(), 128U);
+        for (const auto& arrival : bench.back_end.arrivals) {
+            const pipeline::Quad& quad = pass.stream.quads[arrival.task.quad];
+            EXPECT_EQ(arrival.pipe, (quad.x / tile + 3 * (quad.y / tile)) % 3) << tile;
+        }
+    }
+}
+
 TEST(FragmentScheduler, CountsPredecessorsAtEachLivingPixel) {
     KBufferPass pass;
     pass.quad(0, 0, 0b1111);

@@ -13,6 +13,7 @@
 namespace tests {
 
 struct BackEndOptions {
+    pipeline::FragmentSchedulerParams scheduler = {};
     std::uint32_t pipes = 1;
     std::optional<std::uint32_t> closed_pipe = {}; ///< takes nothing
     bool commits = true;                           ///< living quads are committed, as in passes that touch the k-buffer
@@ -102,8 +103,8 @@ class SchedulerBench {
                             pipeline::SchedulingPlan* plan = nullptr, const pipeline::FlushRule& flush = {},
                             pipeline::QuadPayloads* payloads = nullptr)
         : rig(options.mode, 1, options.shuffle),
-          scheduler(rig.context("scheduler"), {}, options.pipes, 1, pass.context, plan != nullptr ? *plan : no_plan,
-                    flush, payloads),
+          scheduler(rig.context("scheduler"), options.scheduler, options.pipes, 1, pass.context,
+                    plan != nullptr ? *plan : no_plan, flush, payloads),
           source(rig.context("source"), pass.quad_tasks()),
           back_end(rig.context("back_end"), options) {
         scheduler.begin_pass();

@@ -32,7 +32,7 @@ enum class PassKind : std::uint8_t {
     draw,    ///< rasterizes `draws`
     screen,  ///< runs `shader` on every pixel of its targets
     compose, ///< the same without taking time: a picture of what the frame has left
-    resolve, ///< reads the finished surfaces and writes the picture; timed where Frame::resolve says how
+    resolve, ///< reads the finished surfaces and writes the picture, by Frame::resolve; takes no time
 };
 
 /// Triangles of one instance of a draw that are handed over with a draw call of their own: a run of the list that
@@ -58,7 +58,6 @@ struct Pass {
     std::vector<SurfaceId> targets;
     std::shared_ptr<const Shader> shader; ///< null: the colour of the material is the only output
     std::vector<SurfaceId> reads;         ///< what the shader knows by its place in this list
-    std::uint32_t written_targets = 1;    ///< counted: colour surfaces of that format written at once
     SurfaceId depth = no_surface;         ///< tested and written as the states say, with its stencil
     SurfaceId kbuffer = no_surface;       ///< fragments go through its modify program
     bool both_faces = false;              ///< draws triangles that face away, too

@@ -14,7 +14,7 @@
 
 #include "pipeline/output/fragment_lists.hpp"
 #include "pipeline/output/kbuffer_design.hpp"
-#include "pipeline/resolve.hpp"
+#include "pipeline/screen_pass.hpp"
 
 #include <array>
 #include <string>

@@ -1,6 +1,5 @@
 #include "pipeline/machine.hpp"
 
-#include "pipeline/functional/composite.hpp"
 #include "pipeline/functional/fragment_operations.hpp"
 #include "pipeline/functional/screen_stream.hpp"
 #include "pipeline/functional/shade_pass.hpp"
@@ -113,7 +112,7 @@ void Machine::build() {
 bool Machine::pass_reads_textures() const {
     const bool reads = std::any_of(frame_->passes.begin(), frame_->passes.end(),
                                    [](const Pass& pass) { return pass.rasterizes() && pass.reads_surfaces(); });
-    return reads || frame_->needs.textures || peels() || keeps_lists() || frame_->screen_draw;
+    return reads || frame_->needs.textures || peels() || keeps_lists();
 }
 
 bool Machine::peels() const { return frame_->needs.kbuffer && plan_.site == UpdateSite::passes; }
@@ -237,7 +236,6 @@ void Machine::bind(const Pass& pass, const FragmentStream& stream) {
         context.targets.push_back(written ? std::optional(frame_->surfaces[target].format) : std::nullopt);
         context.colour_bytes += written ? bytes_of(*context.targets.back()) : 0;
     }
-    context.colour_bytes *= pass.written_targets;
     context.depth_format = pass.depth == no_surface ? SurfaceFormat::d24 : frame_->surfaces[pass.depth].format;
     context.depth_bytes = bytes_of(context.depth_format);
     context.behind = nullptr;
@@ -284,33 +282,10 @@ void Machine::draw(const Pass& pass, const FragmentStream& unshaded) {
     store_entries(units_->surfaces, pass.kbuffer, units_->kbuffer->image());
 }
 
-// What computes the picture, where the workload says how.
-void Machine::resolve() {
-    if (!frame_->screen_draw || !frame_->resolve) return;
-    const SurfaceStore& surfaces = units_->surfaces;
-    const std::vector<float> kbuffer = entries_of(surfaces, frame_->main_kbuffer()),
-                             colour = colours_of(surfaces, frame_->main_colour()),
-                             depth = depths_of(surfaces, frame_->main_depth());
-    const auto passes = with_drained(*frame_, {kbuffer, colour, depth}, [this](const FinishedSurfaces& finished) {
-        return frame_->resolve->screen_passes(*frame_, finished);
-    });
-    std::uint64_t left = units_->kbuffer_clear.left();
-    for (const ClearBits& bits : units_->cleared) left += bits.left();
-    if (!passes.empty() && left != 0) {
-        begin("resolve of cleared sectors");
-        if (frame_->program != nullptr) resolve_cleared(units_->kbuffer_clear, kbuffer_bytes());
-        for (SurfaceId surface = 0; surface < units_->cleared.size(); ++surface)
-            if (frame_->surfaces[surface].program == nullptr)
-                resolve_cleared(units_->cleared[surface], bytes_of(frame_->surfaces[surface].format));
-        end();
-    }
-    for (const ScreenPass& pass : passes) screen(pass, *frame_->screen_draw);
-}
-
 void Machine::screen(const ScreenPass& pass, std::uint32_t triangle) {
     PassContext& context = units_->pass;
     const FragmentStream stream = screen_stream(pass.width, pass.height, triangle);
-    units_->fixed = {}; // its values are the workload's
+    units_->fixed = {}; // its values are those of run_lists()
     context.layout = layout_of(pass.width, pass.height);
     context.end = FragmentEnd::depth_colour;
     context.states = DrawStates();
@@ -352,8 +327,7 @@ RunResult Machine::run(const ReferenceImage& reference) {
         case PassKind::compose:
             compose_and_judge(number, reference);
             break;
-        case PassKind::resolve:
-            resolve();
+        case PassKind::resolve: // takes no time
             break;
         }
     }

@@ -65,7 +65,6 @@ class Machine {
     void bind(const Pass& pass, const FragmentStream& stream);
     void drop_written(std::span<const SurfaceId> written);
     void run_and_judge(std::size_t number, const FragmentStream& stream, const ReferenceImage& reference);
-    void resolve();
     /// @param triangle the draw whose triangle covers the screen, or stands for one that does
     void screen(const ScreenPass& pass, std::uint32_t triangle);
     void draw_layers(const Pass& pass, const FragmentStream& stream);

@@ -144,6 +144,7 @@ void Machine::collect_pixels(RunResult& result, const ReferenceImage& reference)
     result.colour = colours_of(surfaces, frame_->main_colour());
     result.depth = depths_of(surfaces, frame_->main_depth());
     result.stencil = stencils_of(surfaces, frame_->main_depth());
+    result.shown = surfaces.shown();
     for (SurfaceId i = 0; i < surfaces.count(); ++i) result.surfaces.push_back({surfaces.info(i), surfaces.memory(i)});
     const std::vector<std::uint8_t> fixed = wrong_fixed_places(result, reference);
     wrong.resize(frame_->view_of_kbuffer().places());

@@ -276,6 +276,7 @@ class Reference {
         CHECK(next_stream_ == streams_.size());
         read_surfaces();
         if (frame_.needs.kbuffer && frame_.output != no_surface) image_.picture = image_.colour;
+        image_.shown = surfaces_.shown();
         image_.accepted_insertions = counts_.accepted;
         image_.missed_reads = counts_.missed_reads;
         image_.missed_pixels = counts_.missed_pixels;

@@ -23,6 +23,7 @@ struct ReferenceImage {
     std::vector<float>
         picture;           ///< RGBA per pixel of frames with a k-buffer: the output, or what the resolve pass makes
     SurfaceStore composed; ///< has what passes without time wrote last, and nothing else
+    SurfaceStore shown;    ///< surfaces that reports show, and nothing else
 
     /// After each pass of the frame, of each surface that it writes: see written_surfaces().
     std::vector<std::vector<std::uint64_t>> digests;

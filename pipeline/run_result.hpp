@@ -113,6 +113,8 @@ struct RunResult {
     std::vector<std::uint8_t> hazard_mask; ///< bit i: hazard class i happened here; empty when there was none
     std::vector<std::uint8_t> wrong_mask;  ///< 1 where the pixel differs from the reference
 
+    SurfaceStore shown; ///< surfaces that reports show, and nothing else
+
     // What was built and left out on this machine for this design.
     std::vector<std::string> built;
     std::vector<std::pair<std::string, std::string>> left_out; ///< unit, reason

@@ -10,8 +10,7 @@ namespace pipeline {
 
 namespace {
 
-constexpr std::uint64_t alignment = 256;   ///< of a level, in bytes
-constexpr std::uint64_t target_bytes = 16; ///< of a pixel of a k-buffer's render target
+constexpr std::uint64_t alignment = 256; ///< of a level, in bytes
 
 std::vector<std::byte> cleared_texel(const SurfaceInfo& info) {
     std::vector<std::byte> texel(info.texel_bytes());
@@ -81,6 +80,14 @@ void SurfaceStore::share(const SurfaceStore& other, SurfaceId id) {
         surface.levels[level].pages = other.surfaces_[id].levels[level].pages;
 }
 
+SurfaceStore SurfaceStore::shown() const {
+    SurfaceStore store;
+    for (const Surface& surface : surfaces_)
+        if (!surface.info.shown.empty()) store.surfaces_.push_back(surface);
+    store.end_address_ = end_address_;
+    return store;
+}
+
 // Pages at the edge reach beyond the surface; what lies there is never written.
 std::uint64_t SurfaceStore::digest(SurfaceId id) const {
     const Surface& surface = surfaces_[id];
@@ -112,7 +119,7 @@ std::uint64_t SurfaceStore::address(SurfaceId id, SurfacePlace place, std::uint3
     const std::uint64_t pixel = place.row % 2 * 2 + place.x % 2;
     const std::uint64_t base = level.address + block * 4 * surface.texel_bytes;
     if (surface.info.program == nullptr) return base + pixel * surface.texel_bytes;
-    return base + (std::uint64_t{target} * 4 + pixel) * target_bytes;
+    return base + (std::uint64_t{target} * 4 + pixel) * target_pixel_bytes;
 }
 
 std::uint64_t SurfaceStore::end_of(SurfaceId id) const {

@@ -15,7 +15,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,9 +25,13 @@ namespace pipeline {
 using SurfaceId = std::uint32_t;
 inline constexpr SurfaceId no_surface = ~SurfaceId{0};
 
-/// How reports make a picture of a surface.
+inline constexpr std::uint32_t target_pixel_bytes = 16; ///< of a pixel of a k-buffer's render target
+
+/// How reports make a picture of a channel of a surface.
 struct SurfacePicture {
+    std::string name; ///< a file's, without its ending
     std::string title;
+    std::uint32_t channel = 0;
     float low = 0.0F, high = 1.0F; ///< what is shown as black and as white
 };
 
@@ -42,7 +45,7 @@ struct SurfaceInfo {
     std::array<std::byte, largest_texel> cleared{};
     std::shared_ptr<const ModifyProgram> program{}; ///< makes it a k-buffer
     bool kept = false;                              ///< lives on in the next frame
-    std::optional<SurfacePicture> shown{};
+    std::vector<SurfacePicture> shown{};
 
     std::uint32_t texel_bytes() const { return program ? program->bytes_per_pixel() : bytes_of(format); }
     std::uint32_t width_of(std::uint32_t level) const { return std::max(1U, width >> level); }
@@ -106,6 +109,8 @@ class SurfaceStore {
     void clear(SurfaceId surface);
     /// Takes the content that the same surface has in `other`.
     void share(const SurfaceStore& other, SurfaceId surface);
+    /// Those that reports show, and nothing else.
+    SurfaceStore shown() const;
     /// Hash of all its bytes; that of a page that nothing was written to and of one that holds the same are equal.
     std::uint64_t digest(SurfaceId surface) const;
     /// Places of level 0 at which both hold different bytes.

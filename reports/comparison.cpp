@@ -75,7 +75,7 @@ void keep_first_sample(FramePixels& pixels, const pipeline::Frame& frame) {
 // Where no pixel is wrong, the picture is that of the reference, if it is of the same submission.
 FramePixels run_pixels(const ComparisonInput& input, const std::vector<float>& reference, const ComparedDesign& design,
                        pipeline::RunResult& run) {
-    FramePixels pixels{std::move(run.kbuffer), {}, std::move(run.colour), std::move(run.depth)};
+    FramePixels pixels{std::move(run.kbuffer), {}, std::move(run.colour), std::move(run.depth), std::move(run.shown)};
     pixels.composite = run.wrong_pixels == 0 && design.submitted == nullptr
                            ? reference
                            : picture_of(*input.frame, pixels.kbuffer, pixels.colour, pixels.depth);
@@ -236,6 +236,7 @@ Comparison compare(ComparisonInput input, const Supervision& supervision) {
     comparison.reference.kbuffer = std::move(reference.kbuffer);
     comparison.reference.colour = std::move(reference.colour);
     comparison.reference.depth = std::move(reference.depth);
+    comparison.reference.shown = std::move(reference.shown);
     keep_first_sample(comparison.reference, *input.frame);
     comparison.depth_complexity = most_of_samples(input.frame->view_of_kbuffer(), input.reference.depth_complexity);
     comparison.scene = std::move(input.scene);

@@ -36,6 +36,7 @@ struct FramePixels {
     std::vector<float> composite; ///< linear RGBA of the finished picture for each pixel; empty when no pass makes one
     std::vector<float> colour;    ///< RGBA of the "colour" surface; empty when the frame has none
     std::vector<float> depth;     ///< window depths of the "depth" surface, likewise
+    pipeline::SurfaceStore shown; ///< surfaces that are shown, and nothing else
 };
 
 struct GpuFacts {

@@ -1,7 +1,7 @@
 #include "reports/picture_files.hpp"
 
-#include "pipeline/functional/composite.hpp"
 #include "pipeline/functional/parallel.hpp"
+#include "pipeline/functional/surface_values.hpp"
 #include "reports/atomic_file.hpp"
 #include "reports/pictures.hpp"
 #include "sim/check.hpp"
@@ -75,19 +75,17 @@ class PictureWriter {
 
     /// What the workload shows on the way to its picture.
     void add_steps(const std::string& subject, const FramePixels& pixels) {
-        const pipeline::Frame& frame = *comparison_.frame;
-        if (!layout_ || !frame.resolve) return;
-        auto images = pipeline::with_drained(frame, {pixels.kbuffer, pixels.colour, pixels.depth},
-                                             [&](const pipeline::FinishedSurfaces& surfaces) {
-                                                 return frame.resolve->images(frame, surfaces, pixels.composite);
-                                             });
-        for (pipeline::ResolveImage& image : images) {
-            const auto step = std::make_shared<const pipeline::ResolveImage>(std::move(image));
-            add_png(fs::path(subject) / (step->name + ".png"), subject, step->title,
-                    [step] { return value_picture(*step); });
-            add_exr(fs::path(subject) / (step->name + ".exr"), [step] {
-                return Measurement{step->width, step->height, {"value"}, step->values};
-            });
+        for (pipeline::SurfaceId id = 0; id < pixels.shown.count(); ++id) {
+            const pipeline::SurfaceInfo& info = pixels.shown.info(id);
+            for (const pipeline::SurfacePicture& step : info.shown) {
+                const Size size{info.width, info.height};
+                const auto values = [&pixels, id, &step] { return channel_of(pixels.shown, id, step.channel); };
+                add_png(fs::path(subject) / (step.name + ".png"), subject, step.title,
+                        [size, &step, values] { return value_picture(size, values(), step); });
+                add_exr(fs::path(subject) / (step.name + ".exr"), [size, values] {
+                    return Measurement{size.width, size.height, {"value"}, values()};
+                });
+            }
         }
     }
 

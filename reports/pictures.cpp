@@ -207,21 +207,21 @@ Picture difference_picture(Size size, std::span<const float> rgba, std::span<con
     return with_legend(picture, difference_legend(factor, differing, only_stored, design));
 }
 
-Picture value_picture(const pipeline::ResolveImage& image) {
+Picture value_picture(Size size, std::span<const float> values, const pipeline::SurfacePicture& shown) {
     const auto grey = [](double position) {
         const auto code = static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(position, 0.0, 1.0)));
         return Colour{code, code, code};
     };
-    const double extent = std::max(static_cast<double>(image.high) - image.low, 1e-30);
-    Picture picture(image.width, image.height);
-    CHECK(image.values.size() == picture.pixels.size());
+    const double extent = std::max(static_cast<double>(shown.high) - shown.low, 1e-30);
+    Picture picture(size.width, size.height);
+    CHECK(values.size() == picture.pixels.size());
     for (std::size_t pixel = 0; pixel < picture.pixels.size(); ++pixel)
-        picture.pixels[pixel] = grey((image.values[pixel] - image.low) / extent);
+        picture.pixels[pixel] = grey((values[pixel] - shown.low) / extent);
     Legend legend;
-    legend.title = image.title;
+    legend.title = shown.title;
     legend.ramp = grey;
     for (const double at : {0.0, 0.25, 0.5, 0.75, 1.0})
-        legend.ticks.push_back({at, fmt::format("{:.4g}", image.low + at * extent)});
+        legend.ticks.push_back({at, fmt::format("{:.4g}", shown.low + at * extent)});
     return with_legend(picture, legend);
 }
 

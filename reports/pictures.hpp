@@ -1,7 +1,6 @@
 // The pictures of a report, as pure functions of what a run left behind.
 #pragma once
 
-#include "pipeline/resolve.hpp"
 #include "pipeline/run_result.hpp"
 #include "reports/images.hpp"
 #include "reports/kbuffer_layout.hpp"
@@ -56,8 +55,8 @@ class DifferenceScale {
 Picture difference_picture(Size size, std::span<const float> rgba, std::span<const float> reference,
                            std::span<const std::uint8_t> wrong, std::uint32_t factor, const std::string& design);
 
-/// One value a pixel in grey, image.low black and image.high white, with a scale below.
-Picture value_picture(const pipeline::ResolveImage& image);
+/// One value a pixel in grey, shown.low black and shown.high white, with a scale below.
+Picture value_picture(Size size, std::span<const float> values, const pipeline::SurfacePicture& shown);
 
 /// Fragments per pixel as heat, with a scale below.
 Picture overlap_picture(Size size, std::span<const std::uint32_t> depth_complexity);

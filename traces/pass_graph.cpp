@@ -184,11 +184,6 @@ void PassGraph::see_from(const pipeline::View& view) {
     last_draw().view = static_cast<std::uint32_t>(frame_.other_views.size());
 }
 
-void PassGraph::write_targets(std::uint32_t targets) {
-    CHECK(targets >= 1);
-    last_draw().written_targets = targets;
-}
-
 void PassGraph::set_states(std::vector<pipeline::RasterState> states, std::vector<std::uint32_t> of_draw) {
     CHECK(!states.empty() && (of_draw.empty() || of_draw.size() == last_draw().draws.size()));
     last_draw().states = std::move(states);
@@ -286,7 +281,10 @@ class PassGraph::Binding {
 };
 
 Frame PassGraph::lower() const {
-    Culling culling(outputs_);
+    std::vector<std::string> read = outputs_;
+    for (const auto& [name, surface] : surfaces_)
+        if (!surface.info.shown.empty()) read.push_back(name);
+    Culling culling(read);
     for (auto node = nodes_.rbegin(); node != nodes_.rend(); ++node) culling.visit(*node);
     Frame frame = frame_;
     const std::vector<Node> kept = culling.kept();

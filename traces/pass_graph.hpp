@@ -44,6 +44,7 @@ class PassGraph {
     /// replaced by lower().
     explicit PassGraph(pipeline::Frame frame);
 
+    /// A surface that reports show is an output, too.
     void add_surface(pipeline::SurfaceInfo info);
     /// As large as what the first pass that writes it sees. Depth formats are cleared to the far plane.
     void add_surface(std::string name, pipeline::SurfaceFormat format, const glm::vec4& cleared = glm::vec4(0.0F));
@@ -60,8 +61,6 @@ class PassGraph {
     void vertex_shader_reads(std::uint32_t attributes);
     /// The pass added last sees the scene from there instead of Frame::view.
     void see_from(const pipeline::View& view);
-    /// The pass added last writes that many colour targets at once; see pipeline::Pass::written_targets.
-    void write_targets(std::uint32_t targets);
     /// The raster states of the pass added last, and which of them each of its draws has (none: all the first), instead
     /// of the one that add_draw() made. Tests and writes of surfaces that the pass does not name are switched off.
     void set_states(std::vector<pipeline::RasterState> states, std::vector<std::uint32_t> of_draw = {});

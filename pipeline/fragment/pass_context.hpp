@@ -7,6 +7,7 @@
 #include "pipeline/functional/surface_texel.hpp"
 #include "pipeline/output/kbuffer_design.hpp"
 #include "pipeline/output/surface_layout.hpp"
+#include "pipeline/screen_pass.hpp"
 
 #include <optional>
 #include <vector>

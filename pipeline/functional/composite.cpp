@@ -33,9 +33,15 @@ std::vector<float> composite(const Frame& frame, const FinishedSurfaces& surface
     CHECK(surfaces.kbuffer.size() == frame.view_of_kbuffer().places() * frame.program->floats_per_pixel());
     CHECK(surfaces.colour.empty() || surfaces.colour.size() == places * 4);
     CHECK(surfaces.depth.empty() || surfaces.depth.size() == places);
-    return with_drained(frame, surfaces, [&frame](const FinishedSurfaces& finished) {
-        return frame.view.samples == 1 ? frame.resolve->picture(frame, finished) : picture_of_samples(frame, finished);
-    });
+    std::vector<float> drained;
+    FinishedSurfaces finished = surfaces;
+    if (frame.program->drains()) {
+        drained.assign(surfaces.kbuffer.begin(), surfaces.kbuffer.end());
+        const std::size_t floats = frame.program->floats_per_pixel();
+        for (std::size_t at = 0; at < drained.size(); at += floats) frame.program->drain(drained.data() + at);
+        finished.kbuffer = drained;
+    }
+    return frame.view.samples == 1 ? frame.resolve->picture(frame, finished) : picture_of_samples(frame, finished);
 }
 
 } // namespace pipeline

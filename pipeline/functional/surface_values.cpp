@@ -30,6 +30,16 @@ std::vector<float> colours_of(const SurfaceStore& surfaces, SurfaceId surface) {
     return values;
 }
 
+std::vector<float> channel_of(const SurfaceStore& surfaces, SurfaceId surface, std::uint32_t channel) {
+    std::vector<float> values;
+    if (surface != no_surface) values.reserve(surfaces.places(surface));
+    for_each_place(surfaces, surface, [&](const SurfacePlace& place) {
+        const glm::vec4 texel = unpack_texel(surfaces.info(surface).format, surfaces.read(surface, place));
+        values.push_back(texel[static_cast<int>(channel)]);
+    });
+    return values;
+}
+
 std::vector<float> depths_of(const SurfaceStore& surfaces, SurfaceId surface) {
     std::vector<float> values;
     if (surface == no_surface || !has_depth(surfaces.info(surface).format)) return values;

@@ -11,6 +11,8 @@ namespace pipeline {
 
 /// RGBA, four floats a place. Empty for no_surface, as below.
 std::vector<float> colours_of(const SurfaceStore& surfaces, SurfaceId surface);
+/// One channel of them.
+std::vector<float> channel_of(const SurfaceStore& surfaces, SurfaceId surface, std::uint32_t channel);
 /// Window depths; empty where the format has none.
 std::vector<float> depths_of(const SurfaceStore& surfaces, SurfaceId surface);
 /// Empty where the format has no stencil.

@@ -88,12 +88,22 @@ std::vector<PixelKind> kinds_of(const FramePixels& pixels, const pipeline::Frame
     return kinds;
 }
 
+// Of a surface that is black in full light a method need not know how much it gets, as nothing shows it.
+void leave_out_black(std::span<const float> picture, std::vector<PixelKind>& kinds) {
+    for (std::size_t pixel = 0; pixel < kinds.size(); ++pixel) {
+        const auto rgba = picture.subspan(4 * pixel, 4);
+        if (rgba[0] == 0.0F && rgba[1] == 0.0F && rgba[2] == 0.0F && rgba[3] == 1.0F)
+            kinds[pixel] = PixelKind::background;
+    }
+}
+
 // Measures the picture, and shows it where that is wanted.
 void judge(const AccuracyRequest& request, const FramePixels& pixels, const pipeline::Frame& frame,
            const Standard& standard, AccuracyPoint& point) {
     const Truth& truth = standard.truth;
     if (standard.measured == traces::Measured::light) {
-        const auto kinds = kinds_of(pixels, frame, standard);
+        auto kinds = kinds_of(pixels, frame, standard);
+        leave_out_black(pixels.composite, kinds);
         point.error = shadow_error(pixels.composite, truth.visibility, kinds);
         if (request.pictures)
             point.picture = shadow_error_picture(frame.view, pixels.composite, truth.visibility, kinds, point.name());

@@ -46,11 +46,6 @@ class HazePicture final : public pipeline::Resolve {
         }
         return picture;
     }
-    std::vector<pipeline::ResolveImage> images(const pipeline::Frame& frame, const pipeline::FinishedSurfaces& finished,
-                                               std::span<const float>) const override {
-        return {{"surfaces", "surfaces kept", frame.view.width, frame.view.height, counts(frame, finished), 0.0F,
-                 static_cast<float>(frame.program->k())}};
-    }
 
   private:
     static std::vector<float> counts(const pipeline::Frame& frame, const pipeline::FinishedSurfaces& finished) {
@@ -125,10 +120,6 @@ TEST(WorkloadFromOutside, RunsAndSaysWhatItLeftOut) {
     EXPECT_TRUE(std::any_of(entries.begin(), entries.end(), [](const reports::LeftOutEntry& entry) {
         return entry.unit == "pass sky" && entry.reason == "haze is lit from everywhere";
     }));
-    const auto images =
-        comparison.frame->resolve->images(*comparison.frame, {comparison.pixels.front().kbuffer, {}, {}}, picture);
-    ASSERT_EQ(images.size(), 1U);
-    EXPECT_EQ(*std::max_element(images[0].values.begin(), images[0].values.end()), 4.0F);
 }
 
 TEST(WorkloadFromOutside, SettingsAreChecked) {

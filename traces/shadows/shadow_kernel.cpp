@@ -74,35 +74,41 @@ float covered_share(const AreaLight& light, std::uint32_t resolution, float du, 
     return share_at(texel_on_light(light, resolution), du, dv, half, z_s, z);
 }
 
-ShadowKernel::ShadowKernel(const ShadowMap& map, const ShadowKernelOptions& options)
-    : map_(&map), options_(options), texel_on_light_(texel_on_light(map.light(), map.options().resolution)) {}
+BackProjection::BackProjection(const AreaLight& light, const ShadowMapOptions& map, const ShadowKernelOptions& options)
+    : light_(light),
+      layers_(light, map),
+      options_(options),
+      levels_(map.hierarchy && options.method == ShadowMethod::layered ? hierarchy_levels(map.resolution) : 0),
+      texel_on_light_(texel_on_light(light, map.resolution)) {}
 
-SearchRegion ShadowKernel::region(const glm::dvec3& world) const {
-    const AreaLight& light = map_->light();
-    const std::uint32_t r = map_->options().resolution;
-    const glm::dvec3 seen = light.seen(world);
+SearchRegion BackProjection::project(const glm::dvec3& world) const {
+    const std::uint32_t r = layers_.options().resolution;
+    const glm::dvec3 seen = light_.seen(world);
     SearchRegion region;
     region.z = static_cast<float>(seen.z);
-    if (!(seen.z > light.near) || !(region.z > static_cast<float>(light.near))) return region;
-    const double texels = r * light.near / (seen.z * light.near_width);
+    if (!(seen.z > light_.near) || !(region.z > static_cast<float>(light_.near))) return region;
+    region.lit = false;
+    const double texels = r * light_.near / (seen.z * light_.near_width);
     const double bound = 4.0 * r; // so far outside of the map that nothing of it can be reached
     region.u = static_cast<float>(std::clamp(r / 2.0 + seen.x * texels, -bound, bound));
     region.v = static_cast<float>(std::clamp(r / 2.0 - seen.y * texels, -bound, bound));
-    if (options_.method != ShadowMethod::layered) {
+    if (options_.method == ShadowMethod::layered)
+        region.width = search_width(light_, r, static_cast<float>(light_.near), region.z);
+    else
         region.across = options_.method == ShadowMethod::hard ? 1 : 2 * options_.pcf_radius + 1;
-        return region;
-    }
-    region.width = search_width(light, r, static_cast<float>(light.near), region.z);
-    for (; region.narrowings < options_.iterations && map_->levels() > 0; ++region.narrowings) {
-        const std::uint32_t level = search_level(region.width, map_->levels());
-        if (region.narrowings < region.level.size()) region.level[region.narrowings] = static_cast<std::uint8_t>(level);
-        const float least = map_->least(level, region.u, region.v);
-        if (!(least < region.z)) {
-            ++region.narrowings;
-            return region; // nothing is nearer to the light: lit
-        }
-        region.width = search_width(light, r, std::max(least, static_cast<float>(light.near)), region.z);
-    }
+    return region;
+}
+
+void BackProjection::narrow(SearchRegion& region, float least) const {
+    ++region.narrowings;
+    region.lit = !(least < region.z); // nothing is nearer to the light
+    if (!region.lit)
+        region.width = search_width(light_, layers_.options().resolution,
+                                    std::max(least, static_cast<float>(light_.near)), region.z);
+}
+
+void BackProjection::spread_samples(SearchRegion& region) const {
+    if (region.lit || options_.method != ShadowMethod::layered) return;
     const float radius = options_.width_as_radius ? region.width : region.width / 2.0F;
     const std::uint32_t side = 2 * static_cast<std::uint32_t>(std::ceil(radius)) + 1;
     const auto most = static_cast<std::uint32_t>(std::sqrt(static_cast<double>(options_.most_samples)));
@@ -115,64 +121,92 @@ SearchRegion ShadowKernel::region(const glm::dvec3& world) const {
                             : static_cast<std::uint32_t>(std::ceil(static_cast<float>(side) / texels_per_sample));
         region.step = static_cast<float>(side) / static_cast<float>(region.across);
     }
-    return region;
 }
 
-float ShadowKernel::share_of_layer(const SearchRegion& region, std::uint32_t layer, int x, int y, float du,
-                                   float dv) const {
-    if (!occludes(layer, x, y, region.z)) return 0.0F;
-    const float half = region.step / 2.0F, z_s = map_->depth(layer, x, y);
+std::array<float, 2> BackProjection::jitter(const SearchRegion& region, std::uint64_t pixel) const {
+    if (!options_.jittered || !(region.step > 1.0F)) return {0.0F, 0.0F};
+    std::array<float, 2> moved = jitter_of(pixel);
+    for (float& offset : moved) offset *= region.step;
+    return moved;
+}
+
+ShadowSample BackProjection::sample(const SearchRegion& region, const std::array<float, 2>& jitter,
+                                    std::uint32_t number) const {
+    const std::uint32_t column = number % region.across, row = number / region.across;
+    if (options_.method != ShadowMethod::layered) {
+        const int radius = static_cast<int>(region.across / 2);
+        return {.x = static_cast<int>(std::floor(region.u)) + static_cast<int>(column) - radius,
+                .y = static_cast<int>(std::floor(region.v)) + static_cast<int>(row) - radius};
+    }
+    const float i = offset_of(region, column) + jitter[0], j = offset_of(region, row) + jitter[1];
+    const auto x = static_cast<int>(std::floor(region.u + i)), y = static_cast<int>(std::floor(region.v + j));
+    if (options_.offset == SampleOffset::integer) return {x, y, i, j};
+    return {x, y, static_cast<float>(x) + 0.5F - region.u, static_cast<float>(y) + 0.5F - region.v};
+}
+
+bool BackProjection::fills_gaps(const SearchRegion& region, const ShadowTexel& here) const {
+    if (!options_.gap_filling || options_.method != ShadowMethod::layered || texel_on_light_ == INFINITY ||
+        here.depths == nullptr)
+        return false;
+    for (std::uint32_t layer = 0; layer < layers_.options().layers; ++layer)
+        if (occludes(here, layer, region.z)) return true;
+    return false;
+}
+
+float BackProjection::share_of_layer(const SearchRegion& region, const ShadowSample& sample,
+                                     const SampledTexels& texels, std::uint32_t layer) const {
+    if (!occludes(texels.here, layer, region.z)) return 0.0F;
+    const float half = region.step / 2.0F, z_s = texels.here.depths[layer];
     if (!options_.gap_filling || texel_on_light_ == INFINITY || !(region.z - z_s > 0.0F))
-        return share_at(texel_on_light_, du, dv, half, z_s, region.z);
+        return share_at(texel_on_light_, sample.du, sample.dv, half, z_s, region.z);
     // Up to the neighbour's edge on the light, where it is an occluder as well.
     const float scale = light_scale(texel_on_light_, z_s, region.z);
-    Interval u = shadow_on_light(du, half, scale), v = shadow_on_light(dv, half, scale);
-    const int stride = std::max(1, static_cast<int>(region.step));
-    const auto edge = [&](int nx, int ny, float offset) {
-        if (!map_->inside(nx, ny) || !occludes(layer, nx, ny, region.z)) return 0.5F;
-        const float z_n = map_->depth(layer, nx, ny);
-        return shadow_on_light(offset, half, light_scale(texel_on_light_, z_n, region.z)).high;
+    Interval u = shadow_on_light(sample.du, half, scale), v = shadow_on_light(sample.dv, half, scale);
+    const auto edge = [&](const ShadowTexel& neighbour, float offset) {
+        if (neighbour.depths == nullptr || !occludes(neighbour, layer, region.z)) return 0.5F;
+        return shadow_on_light(offset, half, light_scale(texel_on_light_, neighbour.depths[layer], region.z)).high;
     };
-    u.low = std::min(u.low, edge(x - stride, y, du - region.step));
-    v.low = std::min(v.low, edge(x, y - stride, dv - region.step));
+    u.low = std::min(u.low, edge(texels.left, sample.du - region.step));
+    v.low = std::min(v.low, edge(texels.above, sample.dv - region.step));
     return (u.high - u.low) * (v.high - v.low);
 }
 
 // A24, steps 2 to 4: of the layers that lie before the receiver, the deepest that covers some of the light.
-float ShadowKernel::share_of(const SearchRegion& region, float i, float j) const {
-    const auto x = static_cast<int>(std::floor(region.u + i)), y = static_cast<int>(std::floor(region.v + j));
-    if (!map_->inside(x, y)) return 0.0F;
-    const bool exact = options_.offset == SampleOffset::exact;
-    const float du = exact ? static_cast<float>(x) + 0.5F - region.u : i;
-    const float dv = exact ? static_cast<float>(y) + 0.5F - region.v : j;
-    for (std::uint32_t layer = map_->options().layers; layer-- > 0;)
-        if (const float share = share_of_layer(region, layer, x, y, du, dv); share > 0.0F) return share;
+float BackProjection::covered(const SearchRegion& region, const ShadowSample& sample,
+                              const SampledTexels& texels) const {
+    if (texels.here.depths == nullptr) return 0.0F;
+    if (options_.method != ShadowMethod::layered) return occludes(texels.here, 0, region.z) ? 1.0F : 0.0F;
+    for (std::uint32_t layer = layers_.options().layers; layer-- > 0;)
+        if (const float share = share_of_layer(region, sample, texels, layer); share > 0.0F) return share;
     return 0.0F;
 }
 
-float ShadowKernel::filtered(const SearchRegion& region) const {
-    const int x = static_cast<int>(std::floor(region.u)), y = static_cast<int>(std::floor(region.v));
-    const int radius = static_cast<int>(region.across / 2);
-    int lit = 0;
-    for (int j = -radius; j <= radius; ++j)
-        for (int i = -radius; i <= radius; ++i)
-            lit += map_->inside(x + i, y + j) && occludes(0, x + i, y + j, region.z) ? 0 : 1;
-    return static_cast<float>(lit) / static_cast<float>(region.across * region.across);
+float BackProjection::visibility(const SearchRegion& region, float covered) const {
+    if (region.across == 0) return 1.0F;
+    if (options_.method == ShadowMethod::layered) return std::max(1.0F - covered, 0.0F);
+    const auto samples = static_cast<float>(region.across * region.across);
+    return (samples - covered) / samples;
+}
+
+SearchRegion ShadowKernel::region(const glm::dvec3& world) const {
+    SearchRegion region = formulas_.project(world);
+    while (formulas_.narrows(region))
+        formulas_.narrow(region, map_->least(formulas_.level(region), region.u, region.v));
+    formulas_.spread_samples(region);
+    return region;
 }
 
 float ShadowKernel::visibility(const SearchRegion& region, std::uint64_t pixel) const {
-    if (region.across == 0) return 1.0F;
-    if (options_.method != ShadowMethod::layered) return filtered(region);
-    std::array<float, 2> moved{0.0F, 0.0F};
-    if (options_.jittered && region.step > 1.0F) {
-        moved = jitter_of(pixel);
-        for (float& offset : moved) offset *= region.step;
-    }
+    const std::array<float, 2> jitter = formulas_.jitter(region, pixel);
+    const int stride = BackProjection::stride(region);
     float covered = 0.0F;
-    for (std::uint32_t j = 0; j < region.across; ++j)
-        for (std::uint32_t i = 0; i < region.across; ++i)
-            covered += share_of(region, offset_of(region, i) + moved[0], offset_of(region, j) + moved[1]);
-    return std::max(1.0F - covered, 0.0F);
+    for (std::uint32_t number = 0; number < region.across * region.across; ++number) {
+        const ShadowSample sample = formulas_.sample(region, jitter, number);
+        covered += formulas_.covered(region, sample,
+                                     {map_->texel(sample.x, sample.y), map_->texel(sample.x - stride, sample.y),
+                                      map_->texel(sample.x, sample.y - stride)});
+    }
+    return formulas_.visibility(region, covered);
 }
 
 } // namespace traces

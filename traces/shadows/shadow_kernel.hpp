@@ -9,6 +9,7 @@
 
 #include "traces/shadows/shadow_map.hpp"
 
+#include <algorithm>
 #include <array>
 #include <glm/glm.hpp>
 
@@ -55,22 +56,55 @@ float covered_share(const AreaLight& light, std::uint32_t resolution, float du, 
 
 /// What the kernel does for one point, before it reads a sample.
 struct SearchRegion {
-    float u = 0, v = 0;                  ///< projected point, texels from the upper left corner of the map
-    float z = 0;                         ///< distance from the light's plane
-    float width = 0;                     ///< kr, in texels
-    std::uint32_t across = 0;            ///< samples along one side; 0: nothing is sampled, the point is lit
-    float step = 1;                      ///< texels between two samples
-    std::uint32_t narrowings = 0;        ///< times the hierarchy was read
-    std::array<std::uint8_t, 4> level{}; ///< where, the first four times
+    float u = 0, v = 0;           ///< projected point, texels from the upper left corner of the map
+    float z = 0;                  ///< distance from the light's plane
+    float width = 0;              ///< kr, in texels
+    bool lit = true;              ///< nothing can lie between the point and the light
+    std::uint32_t narrowings = 0; ///< times the hierarchy was read
+    std::uint32_t across = 0;     ///< samples along one side; 0: nothing is sampled, the point is lit
+    float step = 1;               ///< texels between two samples
 };
 
-class ShadowKernel {
-  public:
-    ShadowKernel(const ShadowMap& map, const ShadowKernelOptions& options);
+struct ShadowSample {
+    int x = 0, y = 0;     ///< texel, perhaps outside of the map
+    float du = 0, dv = 0; ///< from the projected point, in texels
+};
 
-    SearchRegion region(const glm::dvec3& world) const;
-    /// 0 to 1. `pixel` seeds the jitter.
-    float visibility(const SearchRegion& region, std::uint64_t pixel) const;
+/// The texel of a sample, and those that its occluders may reach to; see BackProjection::fills_gaps().
+struct SampledTexels {
+    ShadowTexel here, left, above;
+};
+
+/// The formulas of the kernel, one texel and one place of the hierarchy at a time, whoever reads them.
+class BackProjection {
+  public:
+    BackProjection(const AreaLight& light, const ShadowMapOptions& map, const ShadowKernelOptions& options);
+
+    const ShadowLayers& layers() const { return layers_; }
+    const ShadowKernelOptions& options() const { return options_; }
+
+    // How far is searched: project(); then as long as narrows(), what lies around the place on the region's level();
+    // then spread_samples().
+    SearchRegion project(const glm::dvec3& world) const;
+    bool narrows(const SearchRegion& region) const {
+        return !region.lit && levels_ > 0 && region.narrowings < options_.iterations;
+    }
+    std::uint32_t level(const SearchRegion& region) const { return search_level(region.width, levels_); }
+    void narrow(SearchRegion& region, float least) const;
+    void spread_samples(SearchRegion& region) const;
+
+    /// Added to the offsets of all samples of a pixel, in texels.
+    std::array<float, 2> jitter(const SearchRegion& region, std::uint64_t pixel) const;
+    /// Sample `number` of across^2, row by row.
+    ShadowSample sample(const SearchRegion& region, const std::array<float, 2>& jitter, std::uint32_t number) const;
+    /// Some layer is an occluder, and its share depends on the texels one stride() to the left and up.
+    bool fills_gaps(const SearchRegion& region, const ShadowTexel& here) const;
+    static int stride(const SearchRegion& region) { return std::max(1, static_cast<int>(region.step)); }
+    /// What a sample takes of the light; of filters by a share of texels, 1 or 0.
+    float covered(const SearchRegion& region, const ShadowSample& sample, const SampledTexels& texels) const;
+    /// What is left of the light, 0 to 1, where all samples together take `covered`.
+    float visibility(const SearchRegion& region, float covered) const;
+
     /// Offset of sample i of a side, in texels from the projected point.
     static float offset_of(const SearchRegion& region, std::uint32_t i) {
         const float side = static_cast<float>(region.across) * region.step;
@@ -78,16 +112,33 @@ class ShadowKernel {
     }
 
   private:
-    float share_of(const SearchRegion& region, float i, float j) const;
-    float share_of_layer(const SearchRegion& region, std::uint32_t layer, int x, int y, float du, float dv) const;
-    float filtered(const SearchRegion& region) const;
-    bool occludes(std::uint32_t layer, int x, int y, float z) const {
-        return map_->depth(layer, x, y) + map_->bias(layer, x, y) < z;
+    float share_of_layer(const SearchRegion& region, const ShadowSample& sample, const SampledTexels& texels,
+                         std::uint32_t layer) const;
+    bool occludes(const ShadowTexel& texel, std::uint32_t layer, float z) const {
+        return texel.depths[layer] + layers_.bias(texel, layer) < z;
     }
 
-    const ShadowMap* map_;
+    AreaLight light_;
+    ShadowLayers layers_;
     ShadowKernelOptions options_;
+    std::uint32_t levels_; ///< of the hierarchy; 0: it is not read
     float texel_on_light_;
+};
+
+/// The kernel on a map in memory.
+class ShadowKernel {
+  public:
+    ShadowKernel(const ShadowMap& map, const ShadowKernelOptions& options)
+        : map_(&map), formulas_(map.light(), map.options(), options) {}
+
+    SearchRegion region(const glm::dvec3& world) const;
+    /// 0 to 1. `pixel` seeds the jitter.
+    float visibility(const SearchRegion& region, std::uint64_t pixel) const;
+    static float offset_of(const SearchRegion& region, std::uint32_t i) { return BackProjection::offset_of(region, i); }
+
+  private:
+    const ShadowMap* map_;
+    BackProjection formulas_;
 };
 
 } // namespace traces

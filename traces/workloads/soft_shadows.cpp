@@ -6,20 +6,16 @@
 // (design `multipass`); any design that keeps nearest depths can capture them. Positions are unprojected from a 32-bit
 // depth buffer and rounded to the format of the map, as the render target that held them was.
 #include "models/programs/nearest_k.hpp"
-#include "pipeline/functional/fragment_operations.hpp"
-#include "pipeline/functional/parallel.hpp"
+#include "pipeline/functional/eye_depth.hpp"
 #include "sim/check.hpp"
 #include "traces/pass_graph.hpp"
-#include "traces/screen_draw.hpp"
-#include "traces/shadows/shadow_passes.hpp"
-#include "traces/view_rays.hpp"
+#include "traces/shadows/shadow_shaders.hpp"
 #include "traces/workloads/methods.hpp"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numeric>
 #include <optional>
 
 namespace traces {
@@ -110,149 +106,6 @@ ShadowKernelOptions kernel_options(const SoftShadowParams& params) {
             .pcf_radius = params.pcf_radius};
 }
 
-class ShadowPicture final : public pipeline::Resolve {
-  public:
-    ShadowPicture(const AreaLight& light, const SoftShadowParams& params)
-        : light_(light), params_(params), map_options_(map_options(params)), kernel_options_(kernel_options(params)) {}
-
-    /// Alpha is what each point sees of the light; 1 in the background.
-    std::vector<float> picture(const pipeline::Frame& frame,
-                               const pipeline::FinishedSurfaces& surfaces) const override {
-        const ShadowMap map = map_of(frame, surfaces);
-        const ShadowKernel kernel(map, kernel_options_);
-        std::vector<float> picture(frame.view.pixels() * 4, 1.0F);
-        for_each_point(frame, surfaces, [&](std::size_t pixel, const glm::dvec3& point) {
-            const float visible = kernel.visibility(kernel.region(point), pixel);
-            const float light = params_.ambient + (1.0F - params_.ambient) * visible;
-            for (std::size_t channel = 0; channel < 3; ++channel)
-                picture[pixel * 4 + channel] = light * surfaces.colour[pixel * 4 + channel];
-            picture[pixel * 4 + 3] = visible;
-        });
-        for (std::size_t pixel = 0; pixel < frame.view.pixels(); ++pixel)
-            if (!is_point(surfaces, pixel))
-                for (int channel = 0; channel < 3; ++channel)
-                    picture[pixel * 4 + static_cast<std::size_t>(channel)] = frame.background[channel];
-        return picture;
-    }
-
-    std::vector<pipeline::ScreenPass> screen_passes(const pipeline::Frame& frame,
-                                                    const pipeline::FinishedSurfaces& surfaces) const override {
-        const ShadowMap map = map_of(frame, surfaces);
-        const ShadowKernel kernel(map, kernel_options_);
-        std::vector<KernelWork> work(frame.view.pixels());
-        for_each_point(frame, surfaces, [&](std::size_t pixel, const glm::dvec3& point) {
-            if (!is_black(surfaces, pixel)) work[pixel] = kernel_work(kernel.region(point));
-        });
-        return shadow_passes(setup(frame), work);
-    }
-
-    std::vector<pipeline::ResolveImage> images(const pipeline::Frame& frame, const pipeline::FinishedSurfaces& surfaces,
-                                               std::span<const float> picture) const override {
-        const ShadowMap map = map_of(frame, surfaces);
-        std::vector<pipeline::ResolveImage> images;
-        images.push_back(visibility_image(frame, picture));
-        for (std::uint32_t layer = 0; layer < params_.k; ++layer) images.push_back(distance_image(map, layer));
-        images.push_back(bias_image(map));
-        images.push_back(region_image(frame, surfaces, map));
-        return images;
-    }
-
-    ShadowPassSetup setup(const pipeline::Frame& frame) const {
-        return {frame.view.width, frame.view.height, map_options_, kernel_options_};
-    }
-
-  private:
-    ShadowMap map_of(const pipeline::Frame& frame, const pipeline::FinishedSurfaces& surfaces) const {
-        return {light_, surfaces.kbuffer, frame.program->floats_per_pixel(), map_options_};
-    }
-
-    static bool is_point(const pipeline::FinishedSurfaces& surfaces, std::size_t pixel) {
-        return surfaces.depth[pixel] < 1.0F;
-    }
-    static bool is_black(const pipeline::FinishedSurfaces& surfaces, std::size_t pixel) {
-        const float* rgba = surfaces.colour.data() + pixel * 4;
-        return rgba[0] <= 0.0F && rgba[1] <= 0.0F && rgba[2] <= 0.0F;
-    }
-
-    /// use(pixel, place in the world) for every pixel that shows a surface, in parallel by rows.
-    template <class Use>
-    void for_each_point(const pipeline::Frame& frame, const pipeline::FinishedSurfaces& surfaces, Use use) const {
-        const ViewRays rays(frame.view);
-        const glm::dmat4 to_world = glm::inverse(glm::dmat4(frame.view.view));
-        pipeline::parallel_for(0, frame.view.height, [&](std::size_t row) {
-            const auto y = static_cast<std::uint32_t>(row);
-            for (std::uint32_t x = 0; x < frame.view.width; ++x) {
-                const std::size_t pixel = row * frame.view.width + x;
-                if (!is_point(surfaces, pixel)) continue;
-                const glm::dvec3 eye = rays.place(x, y, rays.distance(surfaces.depth[pixel]));
-                const glm::vec3 world(to_world * glm::dvec4(eye, 1.0));
-                use(pixel, glm::dvec3(through_shadow_format(params_.format, world.x),
-                                      through_shadow_format(params_.format, world.y),
-                                      through_shadow_format(params_.format, world.z)));
-            }
-        });
-    }
-
-    static pipeline::ResolveImage visibility_image(const pipeline::Frame& frame, std::span<const float> picture) {
-        pipeline::ResolveImage image{
-            "visibility", "what each point sees of the light", frame.view.width, frame.view.height, {}, 0.0F, 1.0F};
-        for (std::size_t pixel = 0; pixel < frame.view.pixels(); ++pixel)
-            image.values.push_back(picture[pixel * 4 + 3]);
-        return image;
-    }
-
-    static pipeline::ResolveImage distance_image(const ShadowMap& map, std::uint32_t layer) {
-        const auto [low, high] = map.range();
-        return map_image(map,
-                         {fmt::format("light_layer{}", layer),
-                          fmt::format("distance of layer {} from the light", layer),
-                          0,
-                          0,
-                          {},
-                          low,
-                          high},
-                         [layer](const ShadowMap& from, int x, int y) { return from.depth(layer, x, y); });
-    }
-
-    static pipeline::ResolveImage bias_image(const ShadowMap& map) {
-        const auto [low, high] = map.range();
-        return map_image(
-            map, {"bias", "bias of layer 0", 0, 0, {}, 0.0F, (high - low) / 2.0F},
-            [](const ShadowMap& from, int x, int y) { return from.empty(0, x, y) ? 0.0F : from.bias(0, x, y); });
-    }
-
-    template <class Value>
-    static pipeline::ResolveImage map_image(const ShadowMap& map, pipeline::ResolveImage image, Value value) {
-        image.width = image.height = map.options().resolution;
-        const auto r = static_cast<int>(image.width);
-        for (int y = 0; y < r; ++y)
-            for (int x = 0; x < r; ++x) image.values.push_back(value(map, x, y));
-        return image;
-    }
-
-    pipeline::ResolveImage region_image(const pipeline::Frame& frame, const pipeline::FinishedSurfaces& surfaces,
-                                        const ShadowMap& map) const {
-        const ShadowKernel kernel(map, kernel_options_);
-        pipeline::ResolveImage image{"samples",
-                                     "samples of the kernel",
-                                     frame.view.width,
-                                     frame.view.height,
-                                     std::vector<float>(frame.view.pixels()),
-                                     0.0F,
-                                     static_cast<float>(params_.samples)};
-        for_each_point(frame, surfaces, [&](std::size_t pixel, const glm::dvec3& point) {
-            const std::uint32_t across = is_black(surfaces, pixel) ? 0 : kernel.region(point).across;
-            image.values[pixel] = static_cast<float>(across * across);
-        });
-        return image;
-    }
-
-    AreaLight light_;
-    SoftShadowParams params_;
-    ShadowMapOptions map_options_;
-    ShadowKernelOptions kernel_options_;
-};
-
 void check(const SoftShadowParams& params, const pipeline::View& view) {
     if (!std::has_single_bit(params.map_size))
         throw sim::InputError(fmt::format("{}: map_size: expected a power of two, got {}", place, params.map_size));
@@ -283,6 +136,161 @@ std::optional<std::string> too_large_for_halves(const Scene& scene, const AreaLi
     return std::nullopt;
 }
 
+/// The passes, in the order of section 2.6 of the specification.
+class SoftShadowGraph {
+  public:
+    SoftShadowGraph(pipeline::Frame frame, const AreaLight& light, const SoftShadowParams& params)
+        : params_(params),
+          setup_{.eye = frame.view,
+                 .light = light,
+                 .map = map_options(params),
+                 .kernel = kernel_options(params),
+                 .ambient = params.ambient,
+                 .background = glm::vec3(frame.background)},
+          reads_(setup_),
+          graph_(with_draws_for_light(std::move(frame))) {
+        add_views();
+        add_map();
+        add_kernel();
+    }
+
+    pipeline::Frame lower() const { return graph_.lower(); }
+
+  private:
+    // Draws of their own for each view, so that reports tell them apart.
+    pipeline::Frame with_draws_for_light(pipeline::Frame frame) {
+        const auto draws = static_cast<std::uint32_t>(frame.draws.size());
+        for (std::uint32_t i = 0; i < draws; ++i) {
+            from_eye_.push_back(i);
+            from_light_.push_back(draws + i);
+            frame.draws.push_back(frame.draws[i]);
+            frame.draws.back().name += " (light)";
+        }
+        return frame;
+    }
+
+    pipeline::SurfaceFormat format() const { return surface_format(params_.format); }
+
+    /// Of the map, or a level of its hierarchy.
+    void add_square(const std::string& name, std::uint32_t size, pipeline::SurfaceFormat format,
+                    std::vector<pipeline::SurfacePicture> shown = {}) {
+        graph_.add_surface({.name = name, .format = format, .width = size, .height = size, .shown = std::move(shown)});
+    }
+
+    void add_views() {
+        graph_.add_clear("clear k-buffer", {kbuffer_surface});
+        graph_.add_draw("light", {}, {kbuffer_surface}, from_light_, true);
+        graph_.see_from(setup_.light.view(params_.map_size));
+        graph_.leave_out("colours of the light's passes", "its layers are depths");
+        graph_.add_surface(eye_colours, format()); // alpha is 0 where there is no surface
+        graph_.add_surface(eye_places, format());
+        graph_.add_clear("clear", {depth_surface, eye_colours});
+        ShadedPass eye;
+        eye.name = "eye";
+        eye.shader = shadow_eye_shader(setup_.eye);
+        eye.targets = {eye_colours, eye_places};
+        eye.draws = from_eye_;
+        eye.depth = depth_surface;
+        eye.states[0].depth.test = eye.states[0].depth.write = true;
+        graph_.add_shaded(std::move(eye));
+    }
+
+    void add_screen(std::string name, std::shared_ptr<const pipeline::Shader> shader, std::vector<std::string> reads,
+                    std::vector<std::string> targets, bool timed = true) {
+        ShadedPass pass;
+        pass.name = std::move(name);
+        pass.shader = std::move(shader);
+        pass.reads = std::move(reads);
+        pass.targets = std::move(targets);
+        pass.screen = true;
+        pass.timed = timed;
+        graph_.add_shaded(std::move(pass));
+    }
+
+    static std::string layers_name(std::uint32_t pack) { return fmt::format("shadow map {}", pack); }
+    static std::string slopes_name(std::uint32_t pack) { return fmt::format("slopes {}", pack); }
+    /// The hierarchy begins with the map.
+    std::string level_name(std::uint32_t level) const {
+        return level == 0 ? layers_name(0) : fmt::format("least depths {}", params_.map_size >> level);
+    }
+    static std::vector<std::string> names(std::string (*name)(std::uint32_t), std::uint32_t count) {
+        std::vector<std::string> all;
+        for (std::uint32_t i = 0; i < count; ++i) all.push_back(name(i));
+        return all;
+    }
+
+    void add_map() {
+        const auto near = static_cast<float>(setup_.light.near), far = static_cast<float>(setup_.light.far);
+        const std::vector<std::string> packs = names(layers_name, packs_of(params_.k)),
+                                       slopes = names(slopes_name, packs_of(params_.layers));
+        for (std::uint32_t pack = 0; pack < packs.size(); ++pack) {
+            std::vector<pipeline::SurfacePicture> shown;
+            for (std::uint32_t layer = 4 * pack; layer < std::min(4 * pack + 4, params_.k); ++layer)
+                shown.push_back({fmt::format("light_layer{}", layer),
+                                 fmt::format("distance of layer {} from the light", layer), layer % 4, near, far});
+            add_square(packs[pack], params_.map_size, format(), std::move(shown));
+        }
+        add_screen("pack", shadow_pack_shader(setup_), {kbuffer_surface}, packs);
+        std::vector<std::string> biased{packs[0]};
+        if (setup_.map.gscale > 0.0F) {
+            for (const std::string& name : slopes) add_square(name, params_.map_size, format());
+            add_screen("slopes", shadow_slope_shader(setup_), {kbuffer_surface}, slopes);
+            biased.push_back(slopes[0]);
+        } else {
+            leave_out("slopes", "no slope bias: gscale is 0",
+                      slopes.size() * (map_bytes() + map_texels() * pipeline::target_pixel_bytes));
+        }
+        add_square("bias", params_.map_size, pipeline::SurfaceFormat::r32f,
+                   {{"bias", "bias of layer 0", 0, 0.0F, (far - near) / 2.0F}});
+        add_screen("bias", shadow_bias_shader(setup_), biased, {"bias"}, false);
+        for (std::uint32_t level = 1; level <= reads_.levels; ++level) {
+            add_square(level_name(level), params_.map_size >> level, format());
+            add_screen(level_name(level), least_depth_shader(), {level_name(level - 1)}, {level_name(level)});
+        }
+        if (!setup_.map.hierarchy) // each level is written once and read once
+            leave_out("least depths", "the search region is not narrowed: iterations is 0",
+                      map_bytes() + 2 * (map_bytes() / 3));
+    }
+
+    void add_kernel() {
+        std::vector<std::string> reads{eye_colours, eye_places};
+        for (std::uint32_t pack = 0; pack < reads_.packs; ++pack) reads.push_back(layers_name(pack));
+        for (std::uint32_t pack = 0; pack < reads_.slopes; ++pack) reads.push_back(slopes_name(pack));
+        for (std::uint32_t level = 1; level <= reads_.levels; ++level) reads.push_back(level_name(level));
+        add_picture("samples", pipeline::SurfaceFormat::r32f,
+                    {"samples", "samples of the kernel", 0, 0.0F, static_cast<float>(params_.samples)});
+        add_picture(picture_surface, pipeline::SurfaceFormat::rgba32f,
+                    {"visibility", "what each point sees of the light", 3, 0.0F, 1.0F});
+        add_screen("shadow kernel", shadow_kernel_shader(setup_), reads, {picture_surface});
+        add_screen("samples", shadow_samples_shader(setup_), reads, {"samples"}, false);
+        graph_.output(picture_surface);
+    }
+
+    void add_picture(const char* name, pipeline::SurfaceFormat format, pipeline::SurfacePicture shown) {
+        graph_.add_surface({.name = name,
+                            .format = format,
+                            .width = setup_.eye.width,
+                            .height = setup_.eye.height,
+                            .shown = {std::move(shown)}});
+    }
+
+    std::uint64_t map_texels() const { return std::uint64_t{params_.map_size} * params_.map_size; }
+    std::uint64_t map_bytes() const { return map_texels() * bytes_of(format()); }
+    void leave_out(const char* pass, const char* reason, std::uint64_t bytes) {
+        graph_.leave_out(fmt::format("pass {}", pass),
+                         fmt::format("{}; saves {} bytes of memory traffic", reason, bytes));
+    }
+
+    static constexpr const char* eye_colours = "colours";
+    static constexpr const char* eye_places = "positions";
+
+    SoftShadowParams params_;
+    ShadowSetup setup_;
+    ShadowKernelReads reads_;
+    std::vector<std::uint32_t> from_eye_, from_light_; ///< draws
+    PassGraph graph_;
+};
+
 pipeline::Frame build(const Scene& scene, const pipeline::View& view, const SoftShadowParams& asked_for) {
     SoftShadowParams params = asked_for;
     check(params, view);
@@ -295,38 +303,9 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const Soft
                 fmt::format("format rgba16f cannot hold the scene, rgba32f is taken in its place: {}", *reason));
         }
     frame.program = models::make_nearest_k(models::EntryKind::z, params.k);
-    const auto picture = std::make_shared<const ShadowPicture>(light, params);
-    frame.resolve = picture;
     frame.depth_format = pipeline::SurfaceFormat::d32f;
-    frame.colour_format =
-        params.format == ShadowFormat::rgba16f ? pipeline::SurfaceFormat::rgba16f : pipeline::SurfaceFormat::rgba32f;
     frame.background = {params.background[0], params.background[1], params.background[2], 1.0F};
-    // Draws of their own for each view, so that reports tell them apart.
-    const auto draws = static_cast<std::uint32_t>(frame.draws.size());
-    for (std::uint32_t i = 0; i < draws; ++i) {
-        frame.draws.push_back(frame.draws[i]);
-        frame.draws.back().name += " (light)";
-    }
-    std::vector<std::uint32_t> eye(draws), from_light(draws);
-    std::iota(eye.begin(), eye.end(), 0U);
-    std::iota(from_light.begin(), from_light.end(), draws);
-    add_screen_draw(frame);
-
-    PassGraph graph(std::move(frame));
-    graph.add_clear("clear k-buffer", {kbuffer_surface});
-    graph.add_draw("light", {}, {kbuffer_surface}, std::move(from_light), true);
-    graph.see_from(light.view(params.map_size));
-    graph.add_clear("clear", {depth_surface, colour_surface});
-    graph.add_draw("eye", {depth_surface}, {depth_surface, colour_surface}, std::move(eye));
-    graph.write_targets(2); // colours, and positions
-    graph.add_resolve("shadows", {kbuffer_surface, depth_surface, colour_surface}, {picture_surface});
-    graph.output(picture_surface);
-    graph.leave_out("colours of the light's passes", "its layers are depths");
-    pipeline::Frame result = graph.lower();
-    for (const SavedPass& saved : saved_passes(picture->setup(result)))
-        result.left_out.push_back({fmt::format("pass {}", saved.name),
-                                   fmt::format("{}; saves {} bytes of memory traffic", saved.reason, saved.bytes)});
-    return result;
+    return SoftShadowGraph(std::move(frame), light, params).lower();
 }
 
 // What is lit follows from the surfaces that the eye sees, whatever the shadows' method.

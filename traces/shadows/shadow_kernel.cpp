@@ -144,7 +144,7 @@ ShadowSample BackProjection::sample(const SearchRegion& region, const std::array
     return {x, y, static_cast<float>(x) + 0.5F - region.u, static_cast<float>(y) + 0.5F - region.v};
 }
 
-bool BackProjection::fills_gaps(const SearchRegion& region, const ShadowTexel& here) const {
+bool BackProjection::fills_gaps(const SearchRegion& region, const LayeredTexel& here) const {
     if (!options_.gap_filling || options_.method != ShadowMethod::layered || texel_on_light_ == INFINITY ||
         here.depths == nullptr)
         return false;
@@ -162,7 +162,7 @@ float BackProjection::share_of_layer(const SearchRegion& region, const ShadowSam
     // Up to the neighbour's edge on the light, where it is an occluder as well.
     const float scale = light_scale(texel_on_light_, z_s, region.z);
     Interval u = shadow_on_light(sample.du, half, scale), v = shadow_on_light(sample.dv, half, scale);
-    const auto edge = [&](const ShadowTexel& neighbour, float offset) {
+    const auto edge = [&](const LayeredTexel& neighbour, float offset) {
         if (neighbour.depths == nullptr || !occludes(neighbour, layer, region.z)) return 0.5F;
         return shadow_on_light(offset, half, light_scale(texel_on_light_, neighbour.depths[layer], region.z)).high;
     };

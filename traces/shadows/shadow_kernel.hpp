@@ -72,7 +72,7 @@ struct ShadowSample {
 
 /// The texel of a sample, and those that its occluders may reach to; see BackProjection::fills_gaps().
 struct SampledTexels {
-    ShadowTexel here, left, above;
+    LayeredTexel here, left, above;
 };
 
 /// The formulas of the kernel, one texel and one place of the hierarchy at a time, whoever reads them.
@@ -98,7 +98,7 @@ class BackProjection {
     /// Sample `number` of across^2, row by row.
     ShadowSample sample(const SearchRegion& region, const std::array<float, 2>& jitter, std::uint32_t number) const;
     /// Some layer is an occluder, and its share depends on the texels one stride() to the left and up.
-    bool fills_gaps(const SearchRegion& region, const ShadowTexel& here) const;
+    bool fills_gaps(const SearchRegion& region, const LayeredTexel& here) const;
     static int stride(const SearchRegion& region) { return std::max(1, static_cast<int>(region.step)); }
     /// What a sample takes of the light; of filters by a share of texels, 1 or 0.
     float covered(const SearchRegion& region, const ShadowSample& sample, const SampledTexels& texels) const;
@@ -114,7 +114,7 @@ class BackProjection {
   private:
     float share_of_layer(const SearchRegion& region, const ShadowSample& sample, const SampledTexels& texels,
                          std::uint32_t layer) const;
-    bool occludes(const ShadowTexel& texel, std::uint32_t layer, float z) const {
+    bool occludes(const LayeredTexel& texel, std::uint32_t layer, float z) const {
         return texel.depths[layer] + layers_.bias(texel, layer) < z;
     }
 

@@ -48,7 +48,7 @@ class QuadLayers {
             texels_[i].slopes = reads.slopes != 0 ? slopes_[i].data() : nullptr;
         }
     }
-    const ShadowTexel& operator[](std::size_t i) const { return texels_[i]; }
+    const LayeredTexel& operator[](std::size_t i) const { return texels_[i]; }
 
   private:
     using Layers = std::array<std::array<float, ShadowLayers::most>, 4>;
@@ -64,7 +64,7 @@ class QuadLayers {
     }
 
     Layers depths_{}, slopes_{};
-    std::array<ShadowTexel, 4> texels_;
+    std::array<LayeredTexel, 4> texels_;
 };
 
 using QuadRegions = std::array<SearchRegion, 4>;

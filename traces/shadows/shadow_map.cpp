@@ -51,7 +51,7 @@ float ShadowLayers::slope(float here, float right, float below) const {
     return through_shadow_format(options_.format, bounded);
 }
 
-float ShadowLayers::bias(const ShadowTexel& texel, std::uint32_t layer) const {
+float ShadowLayers::bias(const LayeredTexel& texel, std::uint32_t layer) const {
     float bias = 0.0F;
     const bool last = layer + 1 == options_.captured;
     const float* depth = texel.depths + layer;
@@ -107,7 +107,7 @@ ShadowMap::ShadowMap(const AreaLight& light, std::span<const float> kbuffer, std
     if (options.hierarchy) build_hierarchy();
 }
 
-ShadowTexel ShadowMap::texel(int x, int y) const {
+LayeredTexel ShadowMap::texel(int x, int y) const {
     const auto r = static_cast<int>(options().resolution);
     if (x < 0 || y < 0 || x >= r || y >= r) return {};
     const std::size_t at = static_cast<std::size_t>(y) * static_cast<std::size_t>(r) + static_cast<std::size_t>(x);

@@ -48,7 +48,7 @@ struct ShadowMapOptions {
 };
 
 /// A texel's layers; `depths` is null outside of the map.
-struct ShadowTexel {
+struct LayeredTexel {
     const float* depths = nullptr; ///< as the map stores them, `captured` of them
     const float* slopes = nullptr; ///< slope biases of `layers` of them; null: there are none
 };
@@ -69,7 +69,7 @@ class ShadowLayers {
     /// A22, of distances in this texel and in the next ones on either axis, which are this one at the map's border.
     float slope(float here, float right, float below) const;
     /// What is added to the depth of a layer; not negative. The texel lies in the map.
-    float bias(const ShadowTexel& texel, std::uint32_t layer) const;
+    float bias(const LayeredTexel& texel, std::uint32_t layer) const;
     bool reads_next_layer() const {
         return options_.bias == ShadowBias::midpoint || options_.bias == ShadowBias::second_depth;
     }
@@ -101,10 +101,10 @@ class ShadowMap {
     std::uint32_t levels() const { return static_cast<std::uint32_t>(least_.size()); } ///< of the hierarchy
 
     /// x and y may be negative.
-    ShadowTexel texel(int x, int y) const;
+    LayeredTexel texel(int x, int y) const;
     /// Texels outside of the map have no surface.
     float depth(std::uint32_t layer, int x, int y) const {
-        const ShadowTexel at = texel(x, y);
+        const LayeredTexel at = texel(x, y);
         return at.depths != nullptr ? at.depths[layer] : layers_.sentinel();
     }
     /// Inside the map.

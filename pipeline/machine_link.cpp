@@ -34,8 +34,8 @@ void Machine::link() {
     const sim::Cycle cross = gpu_.crossbar.latency;
     // Two tiles wait in front of a pipe, so that the others get theirs meanwhile.
     const std::uint32_t tile = gpu_.scheduler.tile;
-    const sim::ChannelConfig to_pipe = tile == 0 ? sim::ChannelConfig{1, 1, 4}
-                                                 : sim::ChannelConfig{1, width, std::max(tile * tile / 2, 4 * width)};
+    const sim::ChannelConfig to_pipe =
+        tile == 0 ? sim::ChannelConfig{1, 1, 4} : sim::ChannelConfig{1, width, std::max(tile * tile / 2, 4 * width)};
     for (std::uint32_t pipe = 0; pipe < pipes; ++pipe) {
         FragmentPipeline& unit = units.pipes[pipe];
         sim::connect(units.scheduler->pipes_out[pipe], unit.quads_in, to_pipe);

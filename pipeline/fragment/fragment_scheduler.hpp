@@ -1,9 +1,10 @@
 // The fragment scheduler: hands quads to the pipes, and keeps apart what must not fly together.
 //
-// Modelled: one quad per pipe and cycle, or those of a tile of the screen to one pipe as they come; a place in the reorder
-// buffer and, for designs whose shader reads the k-buffer, a payload slot are taken at dispatch; an optional dispatch
-// guard with its side buffer (order per key, lookups and wakes per cycle, stall on overflow); the three-part flush
-// between batches. Source: specification 004, sections 7.1 (flush rule) and 7.2 (steps 1-5); Bavoil 2007, section 4.3.1.
+// Modelled: one quad per pipe and cycle, or those of a tile of the screen to one pipe as they come; a place in the
+// reorder buffer and, for designs whose shader reads the k-buffer, a payload slot are taken at dispatch; an optional
+// dispatch guard with its side buffer (order per key, lookups and wakes per cycle, stall on overflow); the three-part
+// flush between batches. Source: specification 004, sections 7.1 (flush rule) and 7.2 (steps 1-5); Bavoil 2007,
+// section 4.3.1.
 #pragma once
 
 #include "pipeline/fragment/fragment_scheduler_params.hpp"

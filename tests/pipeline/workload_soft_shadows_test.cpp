@@ -119,9 +119,8 @@ TEST(SoftShadows, ShowsWhatLiesOnTheWayToThePicture) {
                 names.insert(picture.name);
                 const std::vector<float> values = channel_of(shown, id, picture.channel);
                 EXPECT_GT(*std::max_element(values.begin(), values.end()), picture.low) << picture.name;
-                if (picture.name == "visibility")
-                    for (std::size_t pixel = 0; pixel < values.size(); ++pixel)
-                        EXPECT_EQ(values[pixel], visible(replay, pixel));
+                for (std::size_t pixel = 0; picture.name == "visibility" && pixel < values.size(); ++pixel)
+                    EXPECT_EQ(values[pixel], visible(replay, pixel));
                 if (picture.name == "samples") {
                     EXPECT_LE(*std::max_element(values.begin(), values.end()), picture.high);
                 }

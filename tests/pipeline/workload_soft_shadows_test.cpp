@@ -197,8 +197,7 @@ TEST(SoftShadows, KernelSkipsWhatNoLightCanChange) {
 TEST(SoftShadowsS5, TimeGrowsWithSamplesAlmostLinearly) {
     std::array<double, 2> cycles{};
     for (const std::size_t i : {0U, 1U}) {
-        const Replay replay =
-            shadows({"map_size=1024", "light_size=1", i == 0 ? "samples=289" : "samples=1089"}, 160, 120);
+        const Replay replay = shadows({"map_size=1024", "light_size=1", i == 0 ? "samples=289" : "samples=1089"});
         cycles[i] = static_cast<double>(
             support::pass_named(replay.run("multipass", {"rop.fast_clear=true"}), "shadow kernel").cycles);
     }

@@ -66,14 +66,14 @@ PassGraph filled(const pipeline::Frame& frame, pipeline::FragmentColour colour) 
 
 } // namespace
 
-pipeline::Frame kbuffer_frame(pipeline::Frame frame, const models::MakePicture& picture,
+pipeline::Frame kbuffer_frame(const pipeline::Frame& frame, const models::MakePicture& picture,
                               pipeline::FragmentColour colour) {
     PassGraph graph = filled(frame, colour);
     add_picture(graph, frame, picture);
     return graph.lower();
 }
 
-pipeline::Frame resolved_frame(pipeline::Frame frame) {
+pipeline::Frame resolved_frame(const pipeline::Frame& frame) {
     PassGraph graph = filled(frame, pipeline::FragmentColour::lit);
     graph.add_resolve("resolve", {kbuffer_surface}, {picture_surface});
     graph.output(picture_surface);

@@ -20,7 +20,7 @@ struct DeferredFrame {
     std::uint32_t transparent = 0; ///< triangles
     std::uint32_t lights = 0;
 
-    auto operator<=>(const DeferredFrame&) const = default;
+    auto operator<=>(const DeferredFrame&) const = default; // NOLINT(modernize-use-nullptr): it means the 0 of <=>
 };
 
 /// Frames that differ in their number of lights.

@@ -141,7 +141,7 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const Dept
     frame.program = models::make_depth_partition(bounds_of(params, extent, view));
     frame.resolve = std::make_shared<const DepthOfFieldPicture>(lens_of(params, extent, view), params.largest_blur);
     frame.background = {params.background[0], params.background[1], params.background[2], 1.0F};
-    return resolved_frame(std::move(frame));
+    return resolved_frame(frame);
 }
 
 } // namespace

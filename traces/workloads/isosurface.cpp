@@ -41,7 +41,7 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const Isos
     setup.depth = pipeline::EyeDepth(view.projection);
     frame.program = models::make_isosurface(setup);
     frame.background = {params.background[0], params.background[1], params.background[2], 1.0F};
-    return kbuffer_frame(std::move(frame), isosurface_picture(params.silhouettes));
+    return kbuffer_frame(frame, isosurface_picture(params.silhouettes));
 }
 
 } // namespace

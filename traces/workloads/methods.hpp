@@ -62,10 +62,10 @@ void add_picture(PassGraph& graph, const pipeline::Frame& frame, const models::M
 
 /// The graph of the methods that do nothing but fill a k-buffer: clear, all draws with both faces through the frame's
 /// program, and the picture.
-pipeline::Frame kbuffer_frame(pipeline::Frame frame, const models::MakePicture& picture,
+pipeline::Frame kbuffer_frame(const pipeline::Frame& frame, const models::MakePicture& picture,
                               pipeline::FragmentColour colour = pipeline::FragmentColour::lit);
 /// With a picture that frame.resolve makes.
-pipeline::Frame resolved_frame(pipeline::Frame frame);
+pipeline::Frame resolved_frame(const pipeline::Frame& frame);
 
 /// The workload with `change(options, name)` applied to what it is given: as_text(), as_list(), own_k().
 Workload taking(Workload workload, void (*change)(WorkloadOptions&, const std::string&), std::string name);

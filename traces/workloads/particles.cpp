@@ -60,14 +60,14 @@ pipeline::Frame isosurface_frame(pipeline::Frame frame, const Scene& scene, cons
     setup.iso_values = iso_values_of(frame, scene, params.iso, range);
     setup.depth = pipeline::EyeDepth(frame.view.projection);
     frame.program = models::make_isosurface(setup);
-    return kbuffer_frame(std::move(frame), isosurface_picture(params.silhouettes));
+    return kbuffer_frame(frame, isosurface_picture(params.silhouettes));
 }
 
 pipeline::Frame layers_frame(pipeline::Frame frame, const ParticlesParams& params) {
     draw_sprites(frame, points_of(frame), params.size, SpriteColour::picture);
     frame.program = models::make_nearest_k(models::EntryKind::rgbz, params.k);
     frame.opacity = params.opacity;
-    return kbuffer_frame(std::move(frame), models::layers_picture(params.opacity));
+    return kbuffer_frame(frame, models::layers_picture(params.opacity));
 }
 
 pipeline::Frame build(const Scene& scene, const pipeline::View& view, const ParticlesParams& params) {

@@ -63,7 +63,7 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const Tran
     const Translucency objects(extinctions(params, frame.draws.size()), params.fresnel);
     frame.program = models::make_nearest_k(entry_of(params), params.k);
     frame.background = {params.background[0], params.background[1], params.background[2], 1.0F};
-    return kbuffer_frame(std::move(frame), translucency_picture(objects), pipeline::FragmentColour::cosine);
+    return kbuffer_frame(frame, translucency_picture(objects), pipeline::FragmentColour::cosine);
 }
 
 // The shader gives cosines as colours.

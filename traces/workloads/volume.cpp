@@ -104,7 +104,7 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const Volu
     setup.depth = pipeline::EyeDepth(view.projection);
     frame.program = models::make_volume(setup);
     frame.background = {params.background[0], params.background[1], params.background[2], 1.0F};
-    return kbuffer_frame(std::move(frame), volume_picture);
+    return kbuffer_frame(frame, volume_picture);
 }
 
 } // namespace

@@ -74,6 +74,17 @@ TEST(Deferred, RenderTargetsAreSwitched) {
     }
 }
 
+TEST(Deferred, PassesThatDrawAlikeShareTheirFragments) {
+    const Replay replay = deferred({"lights=2", "method=fw"});
+    const auto& streams = replay.streams; // ambient, shadow, light, shadow, light, composition
+    ASSERT_EQ(streams.size(), 6U);
+    for (const std::size_t light : {2U, 4U}) {
+        EXPECT_TRUE(streams[0].triangles.shares(streams[light].triangles));
+        EXPECT_TRUE(streams[0].depths.shares(streams[light].depths));
+    }
+    EXPECT_FALSE(streams[1].triangles.shares(streams[3].triangles)); // seen from two lights
+}
+
 TEST(Deferred, S003_D2_RenderTargets) {
     const auto targets = [](const Settings& settings) {
         std::pair<std::uint32_t, double> sum{0, 0.0}; // number, MB

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <iterator>
 #include <span>
 #include <vector>
 
@@ -32,26 +31,21 @@ class QuadWork {
         const auto begin = lines_.begin() + fetch.first;
         if (std::find(begin, lines_.end(), line) != lines_.end()) return;
         lines_.push_back(line);
-        ++fetch.count;
+        begun_bytes_.push_back(fetch.count++ == 0 ? fetch.texel_bytes : 0);
     }
     void clear() {
         issued_ = {};
         fetches_.clear();
         lines_.clear();
+        begun_bytes_.clear();
     }
 
     std::uint32_t instructions() const { return *std::max_element(issued_.begin(), issued_.end()); }
     std::span<const Fetch> fetches() const { return fetches_; }
     /// Of all fetches, one after the other.
     std::span<const std::uint64_t> lines() const { return lines_; }
-    /// The fetch whose first line this is in lines(); null: a further line of one, or none.
-    const Fetch* fetch_that_begins_with(std::size_t line) const {
-        const auto behind = std::upper_bound(fetches_.begin(), fetches_.end(), line,
-                                             [](std::size_t at, const Fetch& fetch) { return at < fetch.first; });
-        if (behind == fetches_.begin()) return nullptr;
-        const Fetch& fetch = *std::prev(behind); // of those that begin there the last: the others have no lines
-        return fetch.first == line && fetch.count != 0 ? &fetch : nullptr;
-    }
+    /// Bytes of a texel of the fetch whose first line this is in lines(); 0: a further line of one.
+    std::uint32_t bytes_begun_with(std::size_t line) const { return begun_bytes_[line]; }
     /// Numbers of 64-byte lines of GPU memory.
     std::span<const std::uint64_t> lines(const Fetch& fetch) const {
         return std::span(lines_).subspan(fetch.first, fetch.count);
@@ -63,6 +57,7 @@ class QuadWork {
     std::array<std::uint32_t, 4> issued_{}; ///< by pixel
     std::vector<Fetch> fetches_;
     std::vector<std::uint64_t> lines_;
+    std::vector<std::uint32_t> begun_bytes_; ///< by line
 };
 
 } // namespace pipeline

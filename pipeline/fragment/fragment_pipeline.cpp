@@ -126,14 +126,16 @@ void FragmentPipeline::start(const QuadTask& task) {
     thread.task.mask = captured_samples(task);
     stats_.peel_rejects += static_cast<std::uint64_t>(std::popcount(task.mask) - std::popcount(thread.task.mask));
     std::uint32_t instructions = pass_->shader_costs[draw].alu;
+    thread.fetches = thread.fixed_fetches = fetches_before_surfaces(thread.task);
     if (pass_->runs_shader()) {
         run_shader(index);
+        thread.fetches += static_cast<std::uint32_t>(work_[index].lines().size());
         instructions += work_[index].instructions();
     }
     if (pass_->screen != nullptr) {
         const Quad& quad = pass_->stream->quads[task.quad];
         instructions = pass_->screen->shader->alu(quad.x, quad.y);
-        thread.fetches = pass_->screen->shader->fetches(quad.x, quad.y);
+        thread.fetches = thread.fixed_fetches = pass_->screen->shader->fetches(quad.x, quad.y);
         thread.steps = pass_->screen->shader->steps(quad.x, quad.y);
     }
     issue(index, ceil_div(std::max(instructions, 1U), params_.alu_per_clk));
@@ -166,34 +168,27 @@ std::uint32_t FragmentPipeline::fetches_before_surfaces(const QuadTask& task) co
 }
 
 // The 64-byte line of the quad's next read-only fetch: first the material's texture, then the peeled layer, at one
-// sample after the other, then the surfaces that its shader reads; ~0 = no more.
+// sample after the other, then the surfaces that its shader reads.
 std::uint64_t FragmentPipeline::fetch_line(std::uint16_t index) const {
     const Thread& thread = threads_[index];
+    if (thread.fetch >= thread.fixed_fetches)
+        return surface_lines + work_[index].lines()[thread.fetch - thread.fixed_fetches];
     if (pass_->screen != nullptr) {
-        if (thread.fetch == thread.fetches) return ~std::uint64_t{0};
         const Quad& quad = pass_->stream->quads[thread.task.quad];
         return screen_lines + pass_->screen->shader->line(quad.x, quad.y, thread.fetch);
     }
     const bool textured = reads_texture(thread.task);
     if (thread.fetch == 0 && textured) return pass_->stream->texture_lines[thread.task.quad];
-    const std::uint32_t sample = thread.fetch - (textured ? 1U : 0U);
-    if (pass_->behind != nullptr && sample < pass_->sample_quads(thread.task.quad)) {
-        const Quad& quad = pass_->stream->quads[thread.task.quad + sample];
-        return layer_lines + passes_ * lines_of_layer + pass_->layout.tile_of(quad.x, quad.y);
-    }
-    if (!pass_->runs_shader()) return ~std::uint64_t{0};
-    const auto lines = work_[index].lines();
-    const std::uint32_t next = thread.fetch - fetches_before_surfaces(thread.task);
-    return next < lines.size() ? surface_lines + lines[next] : ~std::uint64_t{0};
+    const Quad& quad = pass_->stream->quads[thread.task.quad + thread.fetch - (textured ? 1U : 0U)];
+    return layer_lines + passes_ * lines_of_layer + pass_->layout.tile_of(quad.x, quad.y);
 }
 
 std::uint32_t FragmentPipeline::fetch_cycles(std::uint16_t index) const {
     if (pass_->screen != nullptr) return filter_cycles(pass_->screen->texel_bytes);
     const Thread& thread = threads_[index];
-    const std::uint32_t before = pass_->runs_shader() ? fetches_before_surfaces(thread.task) : ~0U;
-    if (thread.fetch < before) return texture_.cycles_per_fetch;
-    const QuadWork::Fetch* fetch = work_[index].fetch_that_begins_with(thread.fetch - before);
-    return fetch != nullptr ? filter_cycles(fetch->texel_bytes) : 1;
+    if (thread.fetch < thread.fixed_fetches) return texture_.cycles_per_fetch;
+    const std::uint32_t texel_bytes = work_[index].bytes_begun_with(thread.fetch - thread.fixed_fetches);
+    return texel_bytes != 0 ? filter_cycles(texel_bytes) : 1;
 }
 
 // Texels of 4 and of 16 bytes take the times of the unit's parameters, those between a time between.
@@ -205,9 +200,8 @@ std::uint32_t FragmentPipeline::filter_cycles(std::uint32_t texel_bytes) const {
 // Fetches one after the other; each costs texture unit time, and a miss the way to memory.
 void FragmentPipeline::fetch_textures(std::uint16_t index) {
     Thread& thread = threads_[index];
-    for (;;) {
+    while (thread.fetch < thread.fetches) {
         const std::uint64_t line = fetch_line(index);
-        if (line == ~std::uint64_t{0}) break;
         use_texture_unit(fetch_cycles(index));
         const std::uint32_t found = l1_.find_texture(line);
         if (found != TextureCache::none && !l1_.pending(found)) {

@@ -97,7 +97,8 @@ class FragmentPipeline final : public sim::Component {
         sim::Cycle looked_up = 0;                ///< when it looked for its pixel's entries
         std::uint32_t line = TextureCache::none; ///< texture line this thread is filling
         std::uint32_t fetch = 0;                 ///< next of the quad's read-only fetches
-        std::uint32_t fetches = 0;               ///< how many the shader of a full-screen pass makes
+        std::uint32_t fixed_fetches = 0;         ///< how many come before those of the surfaces that its shader reads
+        std::uint32_t fetches = 0;               ///< how many there are
         std::uint32_t step = 0;                  ///< next of its dependent steps past the L1
         std::uint32_t steps = 0;
         std::uint32_t loads = 0;     ///< of the present step, on their way

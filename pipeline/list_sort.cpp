@@ -87,9 +87,9 @@ void add_access(std::vector<MemorySegment>& segments, std::uint64_t address, std
 
 class ListSortShader final : public ScreenShader {
   public:
-    ListSortShader(const ListsSite& site, const ModifyProgram& program, const FragmentLists& lists,
+    ListSortShader(const ListsSite& site, const ModifyProgram& program, const FragmentLists& lists, std::uint64_t heads,
                    const FragmentStream& stream)
-        : site_(site), program_(&program), lists_(&lists), work_(lists.layout().blocks()) {
+        : site_(site), program_(&program), lists_(&lists), heads_(heads), work_(lists.layout().blocks()) {
         std::array<std::vector<float>, 4> depths;
         for (std::uint32_t block = 0; block < work_.size(); ++block) {
             for (std::uint32_t pixel = 0; pixel < 4; ++pixel) {
@@ -142,7 +142,7 @@ class ListSortShader final : public ScreenShader {
   private:
     const ListSortWork& work(std::uint32_t x, std::uint32_t y) const { return work_[lists_->layout().block_of(x, y)]; }
     std::uint64_t heads(std::uint32_t x, std::uint32_t y) const {
-        return std::uint64_t{lists_->layout().block_of(x, y)} * 4 * site_.head_bytes;
+        return heads_ + std::uint64_t{lists_->layout().block_of(x, y)} * 4 * site_.head_bytes;
     }
 
     // The newest node of a list hangs at its head.
@@ -172,6 +172,7 @@ class ListSortShader final : public ScreenShader {
     ListsSite site_;
     const ModifyProgram* program_;
     const FragmentLists* lists_;
+    std::uint64_t heads_;            ///< address
     std::vector<ListSortWork> work_; ///< by 2x2 block
     std::uint32_t longest_ = 0;
 };
@@ -245,8 +246,8 @@ ListSortWork list_sort_work(const ListsSite& site, const ModifyProgram& program,
 }
 
 ScreenPass list_sort_pass(const std::string& name, const ListsSite& site, const ModifyProgram& program,
-                          const FragmentLists& lists, const FragmentStream& stream) {
-    auto shader = std::make_shared<const ListSortShader>(site, program, lists, stream);
+                          const FragmentLists& lists, std::uint64_t heads, const FragmentStream& stream) {
+    auto shader = std::make_shared<const ListSortShader>(site, program, lists, heads, stream);
     ScreenPass pass;
     pass.name = name;
     pass.width = lists.layout().width;

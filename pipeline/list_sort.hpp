@@ -35,7 +35,8 @@ ListSortWork list_sort_work(const ListsSite& site, const ModifyProgram& program,
                             const std::array<std::vector<float>, 4>& depths);
 
 /// The pass over all pixels of the k-buffer, whose fragments are in `lists`. All must outlive it.
+/// @param heads address of the lists' heads
 ScreenPass list_sort_pass(const std::string& name, const ListsSite& site, const ModifyProgram& program,
-                          const FragmentLists& lists, const FragmentStream& stream);
+                          const FragmentLists& lists, std::uint64_t heads, const FragmentStream& stream);
 
 } // namespace pipeline

@@ -19,6 +19,9 @@ namespace pipeline {
 
 namespace {
 
+/// Behind the last line of a material's texture.
+constexpr std::uint64_t first_surface_address = std::uint64_t{1} << 38U;
+
 // Fixed function always works per sample.
 bool multisampled(const FragmentStream& stream, const Pass& pass, const KBufferPlan& plan) {
     return stream.samples > 1 && (!pass.runs_program() || plan.works_per_sample());
@@ -54,7 +57,7 @@ void Machine::build() {
     units_ = std::make_unique<Units>(gpu_, *frame_, options_);
     Units& units = *units_;
     units.simulation.set_observer(options_.observer);
-    units.surfaces = SurfaceStore(frame_->surfaces);
+    units.surfaces = SurfaceStore(frame_->surfaces, first_surface_address);
     units.cleared.resize(frame_->surfaces.size());
     diverged_.resize(frame_->surfaces.size());
     PassContext& pass = units.pass;
@@ -187,10 +190,11 @@ void Machine::end() {
     pass.counters = sim::to_json(sim::difference(units_->stats(), units_->stats_at_pass_start));
 }
 
-void Machine::stream_surface(std::uint64_t read_bytes, std::uint64_t write_bytes, bool resolve) {
+void Machine::stream_surface(SurfaceStream stream) {
     const auto groups = static_cast<std::uint64_t>(units_->rops.size());
-    for (Rop& rop : units_->rops) rop.stream(read_bytes / groups, write_bytes / groups, resolve);
-    units_->simulation.run(options_.stop);
+    stream.read_bytes /= groups;
+    stream.write_bytes /= groups;
+    for (Rop& rop : units_->rops) rop.stream(stream);
 }
 
 bool Machine::switches_targets(const Pass& pass) {
@@ -230,16 +234,18 @@ void Machine::bind(const Pass& pass, const FragmentStream& stream) {
     context.multisampled = multisampled(stream, pass, plan_);
     context.states = context.read_only_states = DrawStates(pass, frame_->draws.size());
     context.targets.clear();
-    context.colour_bytes = 0;
+    context.colours.clear();
+    const SurfaceStore& surfaces = units_->surfaces;
     for (const SurfaceId target : pass.targets) {
         const bool written = target != no_surface;
         context.targets.push_back(written ? std::optional(frame_->surfaces[target].format) : std::nullopt);
-        context.colour_bytes += written ? bytes_of(*context.targets.back()) : 0;
+        if (written) context.colours.push_back({surfaces.address(target, {}), bytes_of(*context.targets.back())});
     }
     context.depth_format = pass.depth == no_surface ? SurfaceFormat::d24 : frame_->surfaces[pass.depth].format;
-    context.depth_bytes = bytes_of(context.depth_format);
+    context.depth = {pass.depth == no_surface ? 0 : surfaces.address(pass.depth, {}), bytes_of(context.depth_format)};
+    if (pass.runs_program()) context.kbuffer_address = kbuffer_address(pass.kbuffer);
     context.behind = nullptr;
-    context.surfaces = &units_->surfaces;
+    context.surfaces = &surfaces;
     context.read_only_depth = pass.runs_program() && pass.tests_depth() ? pass.depth : no_surface;
 }
 
@@ -276,13 +282,13 @@ void Machine::draw(const Pass& pass, const FragmentStream& unshaded) {
     begin(pass.name);
     resolve_cleared(pass.reads);
     if (context.end == FragmentEnd::kbuffer_store && !plan_.shader.tile_memory)
-        resolve_cleared(units_->kbuffer_clear, kbuffer_bytes());
+        resolve_cleared(units_->kbuffer_clear, {context.kbuffer_address, kbuffer_bytes()});
     run_draw(stream, frame_->needs_of(pass), switches_targets(pass));
     end();
     store_entries(units_->surfaces, pass.kbuffer, units_->kbuffer->image());
 }
 
-void Machine::screen(const ScreenPass& pass, std::uint32_t triangle) {
+void Machine::screen(const ScreenPass& pass, std::uint32_t triangle, std::uint64_t written_address) {
     PassContext& context = units_->pass;
     const FragmentStream stream = screen_stream(pass.width, pass.height, triangle);
     units_->fixed = {}; // its values are those of run_lists()
@@ -292,7 +298,7 @@ void Machine::screen(const ScreenPass& pass, std::uint32_t triangle) {
     context.read_only_depth = no_surface;
     context.pass = nullptr;
     context.targets = {SurfaceFormat::rgba8}; // whatever its format, a store without blending
-    context.colour_bytes = pass.written_bytes;
+    context.colours = {{written_address, pass.written_bytes}};
     context.multisampled = false;
     context.screen = &pass;
     begin(pass.name);

@@ -22,6 +22,8 @@ namespace pipeline {
 
 class ClearBits;
 struct PeeledLayer;
+struct SurfaceBytes;
+struct SurfaceStream;
 
 struct MachineOptions {
     std::uint64_t seed = 1;
@@ -66,7 +68,7 @@ class Machine {
     void drop_written(std::span<const SurfaceId> written);
     void run_and_judge(std::size_t number, const FragmentStream& stream, const ReferenceImage& reference);
     /// @param triangle the draw whose triangle covers the screen, or stands for one that does
-    void screen(const ScreenPass& pass, std::uint32_t triangle);
+    void screen(const ScreenPass& pass, std::uint32_t triangle, std::uint64_t written_address);
     void draw_layers(const Pass& pass, const FragmentStream& stream);
     void clear_layers();
     void keep_both_ends(std::size_t pixel, const std::vector<PeeledLayer>& near_layers,
@@ -84,15 +86,17 @@ class Machine {
     /// @param switches writes to other targets than the draw before
     void run_draw(const FragmentStream& stream, const Needs& needs, bool switches = true);
     bool switches_targets(const Pass& pass); ///< and remembers those of the pass
-    void stream_surface(std::uint64_t read_bytes, std::uint64_t write_bytes, bool resolve = false);
+    /// Of all groups together; it runs when the simulation does.
+    void stream_surface(SurfaceStream stream);
     bool clears_fast(const SurfaceLayout& layout) const;
-    /// Marks the surface cleared where the table of fast clears holds it; returns the bytes to be written instead.
-    std::uint64_t clear_surface(ClearBits& bits, const SurfaceLayout& layout, std::uint64_t pixels,
-                                std::uint32_t pixel_bytes);
-    void resolve_cleared(ClearBits& bits, std::uint32_t pixel_bytes);
-    void resolve_cleared(std::span<const SurfaceId> read); ///< surfaces that a shader is about to read
-    void forget_entries();                                 ///< of the k-buffer, which is cleared
-    std::uint32_t kbuffer_bytes() const;                   ///< per pixel: entries, or heads of lists
+    /// Marks the surface cleared where the table of fast clears holds it; else streams its bytes.
+    void clear_surface(ClearBits& bits, const SurfaceLayout& layout, std::uint64_t pixels, const SurfaceBytes& surface);
+    void resolve_cleared(ClearBits& bits, const SurfaceBytes& surface);
+    void resolve_cleared(std::span<const SurfaceId> read);  ///< surfaces that a shader is about to read
+    void forget_entries();                                  ///< of the k-buffer, which is cleared
+    std::uint32_t kbuffer_bytes() const;                    ///< per pixel: entries, or heads of lists
+    std::uint64_t kbuffer_address(SurfaceId kbuffer) const; ///< likewise
+    std::uint64_t own_address() const;                      ///< where memory begins that no surface of the frame takes
     void set_costs(const Needs& needs);
     SurfaceLayout layout_of(std::uint32_t width, std::uint32_t height, std::uint32_t samples = 1) const {
         return {width, height, gpu_.rop.groups(), samples};

@@ -5,7 +5,6 @@ namespace pipeline {
 
 void Machine::clear(const Pass& pass) {
     begin(pass.name);
-    std::uint64_t bytes = 0;
     for (const SurfaceId surface : pass.clears) {
         const SurfaceInfo& info = frame_->surfaces[surface];
         const SurfaceLayout layout = layout_of(info.width, info.height, info.planes);
@@ -14,14 +13,15 @@ void Machine::clear(const Pass& pass) {
         if (info.program != nullptr) forget_entries();
         drop_written(std::span(&surface, 1));
         if (info.program == nullptr)
-            bytes += clear_surface(units_->cleared[surface], layout, texels, bytes_of(info.format));
+            clear_surface(units_->cleared[surface], layout, texels,
+                          {units_->surfaces.address(surface, {}), bytes_of(info.format)});
         // Peeling clears its layers one by one instead. Tile memory is cleared on chip, and stores whole sectors.
         else if (plan_.shader.tile_memory)
             units_->kbuffer_clear.set(layout);
         else if (units_->lists || units_->kbuffer)
-            bytes += clear_surface(units_->kbuffer_clear, layout, texels, kbuffer_bytes());
+            clear_surface(units_->kbuffer_clear, layout, texels, {kbuffer_address(surface), kbuffer_bytes()});
     }
-    if (bytes != 0) stream_surface(0, bytes);
+    units_->simulation.run(options_.stop);
     end();
 }
 
@@ -38,31 +38,44 @@ std::uint32_t Machine::kbuffer_bytes() const {
     return units_->lists ? plan_.lists.head_bytes : frame_->program->bytes_per_pixel();
 }
 
+std::uint64_t Machine::kbuffer_address(SurfaceId kbuffer) const {
+    return units_->lists ? own_address() : units_->surfaces.address(kbuffer, {});
+}
+
+std::uint64_t Machine::own_address() const {
+    constexpr std::uint64_t alignment = 4096;
+    return (units_->surfaces.end_address() + alignment - 1) / alignment * alignment;
+}
+
 bool Machine::clears_fast(const SurfaceLayout& layout) const {
     return gpu_.rop.fast_clear && layout.blocks() <= gpu_.rop.clear_sectors;
 }
 
-std::uint64_t Machine::clear_surface(ClearBits& bits, const SurfaceLayout& layout, std::uint64_t pixels,
-                                     std::uint32_t pixel_bytes) {
+void Machine::clear_surface(ClearBits& bits, const SurfaceLayout& layout, std::uint64_t pixels,
+                            const SurfaceBytes& surface) {
     bits.reset();
-    if (!clears_fast(layout)) return pixels * pixel_bytes;
-    bits.set(layout);
-    return 0;
+    if (clears_fast(layout))
+        bits.set(layout);
+    else
+        stream_surface({.write_bytes = pixels * surface.pixel_bytes, .write_address = surface.address});
 }
 
 void Machine::resolve_cleared(std::span<const SurfaceId> read) {
     for (const SurfaceId surface : read) {
         const SurfaceInfo& info = frame_->surfaces[surface];
         if (info.program == nullptr)
-            resolve_cleared(units_->cleared[surface], bytes_of(info.format));
+            resolve_cleared(units_->cleared[surface], {units_->surfaces.address(surface, {}), bytes_of(info.format)});
         else
-            resolve_cleared(units_->kbuffer_clear, kbuffer_bytes());
+            resolve_cleared(units_->kbuffer_clear, {kbuffer_address(surface), kbuffer_bytes()});
     }
 }
 
 // Readers on the memory side do not see the table.
-void Machine::resolve_cleared(ClearBits& bits, std::uint32_t pixel_bytes) {
-    if (bits.left() != 0) stream_surface(0, bits.left() * 4 * pixel_bytes, true);
+void Machine::resolve_cleared(ClearBits& bits, const SurfaceBytes& surface) {
+    if (bits.left() != 0)
+        stream_surface(
+            {.write_bytes = bits.left() * 4 * surface.pixel_bytes, .write_address = surface.address, .resolve = true});
+    units_->simulation.run(options_.stop);
     bits.reset();
 }
 

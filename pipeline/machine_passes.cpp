@@ -60,12 +60,21 @@ void Machine::draw_layers(const Pass& pass, const FragmentStream& stream) {
     context.states = DrawStates(nearest);
     context.depth_format = plan_.passes.depth_format;
     // From both ends: two depths, two colours, both blended with MAX.
-    context.depth_bytes = both_ends ? 8 : bytes_of(context.depth_format);
+    std::uint64_t free = own_address();
+    const auto take = [&free, &context](std::uint32_t pixel_bytes) {
+        const SurfaceBytes taken{free, pixel_bytes};
+        free += std::uint64_t{context.layout.blocks()} * 4 * pixel_bytes;
+        return taken;
+    };
+    context.depth = take(both_ends ? 8 : bytes_of(context.depth_format));
+    const SurfaceBytes copy = take(context.depth.pixel_bytes);
+    context.behind_address = copy.address;
+    const std::uint64_t copy_end = free;
     context.targets.clear();
-    context.colour_bytes = 0;
+    context.colours.clear();
     if (program.needs_colour()) { // RGBA32F, as the k-buffer's entries
         context.targets = {SurfaceFormat::rgba32f};
-        context.colour_bytes = both_ends ? 32 : 16;
+        context.colours = {take(both_ends ? 32 : 16)};
     }
     context.farthest = both_ends;
     clear_layers();
@@ -81,9 +90,9 @@ void Machine::draw_layers(const Pass& pass, const FragmentStream& stream) {
             fixed.far_depth.assign(pixels, 0);
             fixed.far_winner.assign(pixels, ~QuadId{0});
         }
-        std::uint64_t clear = clear_surface(depth_clear, context.layout, drawn, context.depth_bytes);
-        if (context.writes_colour()) clear += clear_surface(colour_clear, context.layout, drawn, context.colour_bytes);
-        if (clear != 0) stream_surface(0, clear);
+        clear_surface(depth_clear, context.layout, drawn, context.depth);
+        for (const SurfaceBytes& colour : context.colours) clear_surface(colour_clear, context.layout, drawn, colour);
+        units_->simulation.run(options_.stop);
         if (plan_.passes.capture == PassCapture::range) {
             context.range = program.range(i);
         } else if (i > 0) {
@@ -99,8 +108,13 @@ void Machine::draw_layers(const Pass& pass, const FragmentStream& stream) {
             near_layers = {{depth_codes_of(layer, 0), fixed.winner}};
         }
         const bool read_again = i + 1 < passes && plan_.passes.capture != PassCapture::range;
-        if (read_again) resolve_cleared(depth_clear, context.depth_bytes);
-        if (read_again) stream_surface(drawn * context.depth_bytes, drawn * context.depth_bytes);
+        if (read_again) {
+            resolve_cleared(depth_clear, context.depth);
+            const std::uint64_t bytes = drawn * copy.pixel_bytes;
+            stream_surface({bytes, bytes, context.depth.address, copy.address});
+            units_->simulation.run(options_.stop);
+            for (FragmentPipeline& pipe : units_->pipes) pipe.drop_surface(copy.address, copy_end);
+        }
         end();
     }
     for (std::size_t pixel = 0; both_ends && pixel < pixels; ++pixel)
@@ -150,14 +164,13 @@ void Machine::draw_lists(const Pass& pass, const FragmentStream& stream) {
     PassContext& context = units_->pass;
     const ListsSite& site = plan_.lists;
     const std::uint64_t pixels = frame_->view_of_kbuffer().samples_drawn();
+    const SurfaceBytes heads{context.kbuffer_address, site.head_bytes};
     context.end = FragmentEnd::kbuffer_list;
     for (std::uint32_t i = 0; i < site.passes; ++i) {
         begin(site.passes == 1 ? pass.name : fmt::format("{} pass {}", pass.name, i));
         context.first_kept = i * site.per_pixel;
-        if (const std::uint64_t clear =
-                i > 0 ? clear_surface(units_->kbuffer_clear, context.layout, pixels, site.head_bytes) : 0;
-            clear != 0)
-            stream_surface(0, clear);
+        if (i > 0) clear_surface(units_->kbuffer_clear, context.layout, pixels, heads);
+        units_->simulation.run(options_.stop);
         run_draw(stream, frame_->needs_of(pass));
         end();
     }
@@ -166,11 +179,14 @@ void Machine::draw_lists(const Pass& pass, const FragmentStream& stream) {
     if (stream.triangles.empty()) return;
     if (units_->kbuffer_clear.left() != 0) {
         begin(pass.name + " resolve of cleared heads");
-        resolve_cleared(units_->kbuffer_clear, site.head_bytes);
+        resolve_cleared(units_->kbuffer_clear, heads);
         end();
     }
-    const ScreenPass sort = list_sort_pass(pass.name + " sort", site, *frame_->program, *units_->lists, stream);
-    screen(sort, stream.triangles.front().draw);
+    const std::uint64_t heads_end = heads.address + std::uint64_t{context.layout.blocks()} * 4 * heads.pixel_bytes;
+    for (FragmentPipeline& pipe : units_->pipes) pipe.drop_surface(heads.address, heads_end);
+    const ScreenPass sort =
+        list_sort_pass(pass.name + " sort", site, *frame_->program, *units_->lists, heads.address, stream);
+    screen(sort, stream.triangles.front().draw, units_->surfaces.address(pass.kbuffer, {}));
 }
 
 void Machine::run_lists(const FragmentStream& stream) {

@@ -23,7 +23,7 @@ class ScreenShader {
     virtual ~ScreenShader() = default;
     virtual std::uint32_t alu(std::uint32_t x, std::uint32_t y) const = 0; ///< instructions, each issued once
     virtual std::uint32_t fetches(std::uint32_t x, std::uint32_t y) const = 0;
-    /// 64-byte line of a fetch, below 2^38; lines of different surfaces differ.
+    /// 64-byte line of GPU memory that a fetch reads.
     virtual std::uint64_t line(std::uint32_t x, std::uint32_t y, std::uint32_t fetch) const = 0;
 
     /// Loads and stores behind the fetches that depend on each other: those of one step go out together, and the next

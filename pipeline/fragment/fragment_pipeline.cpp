@@ -11,13 +11,6 @@ namespace {
 
 constexpr std::uint32_t ceil_div(std::uint32_t value, std::uint32_t by) { return (value + by - 1) / by; }
 
-// Peeled layers lie in an address range of their own, in 64-byte lines of 4x4 depths. Each pass reads another layer,
-// whose lines must not be taken for those of the layer before: 2^24 lines are those of the largest surface.
-constexpr std::uint64_t layer_lines = std::uint64_t{1} << 40U;
-constexpr std::uint64_t lines_of_layer = std::uint64_t{1} << 24U;
-constexpr std::uint64_t surface_lines = std::uint64_t{1} << 39U; ///< surfaces that shaders of passes read
-constexpr std::uint64_t screen_lines = std::uint64_t{1} << 38U;  ///< what a ScreenShader reads
-
 } // namespace
 
 FragmentPipeline::FragmentPipeline(sim::Context context, std::uint16_t pipe, const FragmentParams& params,
@@ -62,13 +55,12 @@ FragmentPipeline::FragmentPipeline(sim::Context context, std::uint16_t pipe, con
 void FragmentPipeline::begin_pass(std::uint32_t registers_per_fragment) {
     l1_.drop_kbuffer_lines();
     call_ = ~std::uint32_t{0};
-    ++passes_;
     thread_limit_ = std::clamp(params_.registers / std::max(registers_per_fragment, 1U), 1U, params_.quads_in_flight);
 }
 
 void FragmentPipeline::drop_surface(std::uint64_t begin, std::uint64_t end) {
-    l1_.drop_texture_lines(surface_lines + begin / TextureParams::line_bytes,
-                           surface_lines + (end + TextureParams::line_bytes - 1) / TextureParams::line_bytes);
+    l1_.drop_texture_lines(begin / TextureParams::line_bytes,
+                           (end + TextureParams::line_bytes - 1) / TextureParams::line_bytes);
 }
 
 // A10; the exact rule breaks ties of depth by submission order, so that no layer is lost and none is repeated.
@@ -171,16 +163,16 @@ std::uint32_t FragmentPipeline::fetches_before_surfaces(const QuadTask& task) co
 // sample after the other, then the surfaces that its shader reads.
 std::uint64_t FragmentPipeline::fetch_line(std::uint16_t index) const {
     const Thread& thread = threads_[index];
-    if (thread.fetch >= thread.fixed_fetches)
-        return surface_lines + work_[index].lines()[thread.fetch - thread.fixed_fetches];
+    if (thread.fetch >= thread.fixed_fetches) return work_[index].lines()[thread.fetch - thread.fixed_fetches];
     if (pass_->screen != nullptr) {
         const Quad& quad = pass_->stream->quads[thread.task.quad];
-        return screen_lines + pass_->screen->shader->line(quad.x, quad.y, thread.fetch);
+        return pass_->screen->shader->line(quad.x, quad.y, thread.fetch);
     }
     const bool textured = reads_texture(thread.task);
     if (thread.fetch == 0 && textured) return pass_->stream->texture_lines[thread.task.quad];
     const Quad& quad = pass_->stream->quads[thread.task.quad + thread.fetch - (textured ? 1U : 0U)];
-    return layer_lines + passes_ * lines_of_layer + pass_->layout.tile_of(quad.x, quad.y);
+    const std::uint64_t block = pass_->layout.block_of(quad.x, quad.y);
+    return (pass_->behind_address + block * 4 * pass_->depth.pixel_bytes) / TextureParams::line_bytes;
 }
 
 std::uint32_t FragmentPipeline::fetch_cycles(std::uint16_t index) const {

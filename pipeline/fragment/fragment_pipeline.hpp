@@ -78,7 +78,7 @@ class FragmentPipeline final : public sim::Component {
     const FragmentPipelineStats& stats() const { return stats_; }
     /// Drops all k-buffer lines and sets the quads in flight from the registers of the pass; between passes.
     void begin_pass(std::uint32_t registers_per_fragment);
-    /// Drops the lines of a surface that was written: bytes [begin, end) of the frame's surfaces.
+    /// Drops the lines of a surface that was written: bytes [begin, end).
     void drop_surface(std::uint64_t begin, std::uint64_t end);
 
   private:
@@ -191,7 +191,6 @@ class FragmentPipeline final : public sim::Component {
     sim::Cycle issue_free_ = 0;
     sim::Cycle texture_free_ = 0;
     std::uint32_t call_ = ~std::uint32_t{0};    ///< draw call of the youngest quad, for invalidate_on_draw
-    std::uint64_t passes_ = 0;                  ///< begun so far
     std::uint32_t orphans_ = ~std::uint32_t{0}; ///< next generation of lines invalidated on their way
 };
 

@@ -28,6 +28,13 @@ struct PeeledLayer {
     std::vector<std::uint32_t> order; ///< quad that wrote it, ~0 where the layer is empty
 };
 
+/// Where the pixels of a surface lie in GPU memory: tiles of 4x4 pixels in row order, 2x2 blocks within. A pixel of
+/// more than 16 bytes has several render targets; a block holds the four pixels of one after the other.
+struct SurfaceBytes {
+    std::uint64_t address = 0;
+    std::uint32_t pixel_bytes = 0;
+};
+
 struct PassContext {
     const FragmentStream* stream = nullptr;
     const ModifyProgram* program = nullptr;
@@ -39,8 +46,10 @@ struct PassContext {
     DrawStates states; ///< of the fixed-function units behind the shader
     /// Formats of the colour targets, nothing for those that are not written.
     std::vector<std::optional<SurfaceFormat>> targets;
-    std::uint32_t colour_bytes = 0; ///< per pixel of all colour targets
-    std::uint32_t depth_bytes = 4;
+    std::vector<SurfaceBytes> colours;   ///< of the targets that are written
+    SurfaceBytes depth{0, 4};            ///< that the pass tests and writes
+    std::uint64_t kbuffer_address = 0;   ///< of the k-buffer, or of the heads of lists
+    std::uint64_t behind_address = 0;    ///< of the copy of `behind` that shaders read, with pixels as in `depth`
     const PeeledLayer* behind = nullptr; ///< reject what is not behind this layer
     const PeeledLayer* before = nullptr; ///< and what is not before this one
     std::optional<DepthInterval> range;  ///< and what lies outside of it
@@ -57,7 +66,12 @@ struct PassContext {
     /// A task is a group of sample quads: shaded once, taken apart in the ROP. Else each sample quad is a task.
     bool multisampled = false;
 
-    bool writes_colour() const { return colour_bytes != 0; }
+    bool writes_colour() const { return !colours.empty(); }
+    std::uint32_t colour_bytes() const { ///< per pixel of all colour targets
+        std::uint32_t bytes = 0;
+        for (const SurfaceBytes& colour : colours) bytes += colour.pixel_bytes;
+        return bytes;
+    }
     /// Its shader is run for every quad, for what it executes and fetches.
     bool runs_shader() const { return pass != nullptr && pass->shader != nullptr; }
     /// Sample quads of the task that begins with this one.

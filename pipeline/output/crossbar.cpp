@@ -29,7 +29,7 @@ std::uint32_t Crossbar::bytes_per_fragment() const {
     case FragmentEnd::depth_colour:
         break;
     }
-    return bytes_of_depth + pass_->colour_bytes;
+    return bytes_of_depth + pass_->colour_bytes();
 }
 
 bool Crossbar::broadcast(const QuadTask& command) {

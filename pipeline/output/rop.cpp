@@ -79,6 +79,7 @@ void Rop::begin_pass() {
     const std::array<bool, 3> used{shape_.depth && !kbuffer, shape_.colour && !kbuffer, kbuffer};
     for (const Use use : {Use::depth, Use::colour, Use::kbuffer}) {
         const auto at = static_cast<std::size_t>(use);
+        memory_[at] = memory_of(use);
         cache(use).begin(used[at] ? lines_that_fit(use) : 0, used[at] ? sector_shape(use) : SectorShape{});
         parts_coming_[at].assign(cache(use).size(), 0);
     }
@@ -219,7 +220,7 @@ sim::Activity Rop::tick() {
         progress |= execute(waiting);
         progress |= admit();
     }
-    if (stream_reads_ + stream_writes_ != 0) progress |= stream_next();
+    if (!streams_.empty()) progress |= stream_next();
     progress |= send_requests();
     progress |= send_answers();
     if (!invalidations_.empty()) progress |= send_invalidations();
@@ -228,7 +229,7 @@ sim::Activity Rop::tick() {
     if (waiting != sim::Activity::starved) return waiting;
     const bool holds = !requests_.empty() || !answers_.empty() || !tile_reads_.empty() || !tile_answers_.empty() ||
                        !invalidations_.empty() || !commits_.empty() || free_stores_.size() != stores_.size() ||
-                       writing_back_ || stream_reads_ + stream_writes_ + stream_outstanding_ != 0 ||
+                       writing_back_ || !streams_.empty() || stream_outstanding_ != 0 ||
                        free_jobs_.size() != jobs_.size() || !pending_blends_.empty();
     return holds ? sim::Activity::memory : sim::Activity::starved;
 }

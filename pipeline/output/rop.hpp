@@ -61,9 +61,8 @@ class Rop final : public sim::Component {
     /// throws sim::InputError when one cannot hold a quad.
     void begin_pass();
     void write_back_all();
-    /// Streams that many bytes of this group's share of a surface, booked as clears or copies, or as a resolve of what
-    /// was cleared.
-    void stream(std::uint64_t read_bytes, std::uint64_t write_bytes, bool resolve = false);
+    /// Streams this group's share of surfaces, one stream after the other.
+    void stream(const SurfaceStream& stream);
 
   private:
     static constexpr std::uint32_t no_entry = TileCache::none;
@@ -136,10 +135,12 @@ class Rop final : public sim::Component {
     TileCache& cache(Use use);
     const TileCache& cache(Use use) const { return const_cast<Rop*>(this)->cache(use); }
     std::span<ClearBits* const> clear_bits(Use use) const; ///< one for each target that is ever cleared
+    std::vector<SurfaceBytes> memory_of(Use use) const;
+    std::span<const SurfaceBytes> memory(Use use) const { return memory_[static_cast<std::size_t>(use)]; }
     SectorShape sector_shape(Use use) const;
     std::uint32_t own_lines(const SectorShape& shape) const;
     std::uint32_t lines_that_fit(Use use) const;
-    std::uint64_t line_address(Use use, std::uint32_t line) const;
+    std::uint64_t line_address(Use use, const SurfaceBytes& surface, std::uint32_t line) const;
     const SurfaceUse& use_of_quad(QuadId quad) const { return uses_[pass_->states.number(*pass_->stream, quad)]; }
     bool cleared(Use use, std::uint32_t line) const;
     bool has_room() const; ///< for what one step asks of memory and tells the texture caches
@@ -197,6 +198,7 @@ class Rop final : public sim::Component {
     FixedQueue<MemoryRequest> requests_;
     std::vector<GrowingQueue<Coming>> coming_;               ///< by memory partition, in order
     sim::Cycle first_coming_ = never;                        ///< when the first of them is here
+    std::array<std::vector<SurfaceBytes>, 3> memory_;        ///< by Use: where the surfaces of the pass lie
     std::array<std::vector<std::uint32_t>, 3> parts_coming_; ///< of a tile that is fetched, by Use and entry
     FixedQueue<TimedRead> tile_reads_;                       ///< on their way to the tile cache's array
     FixedQueue<TimedRead> tile_answers_;                     ///< and back from it
@@ -222,7 +224,7 @@ class Rop final : public sim::Component {
     bool writing_back_ = false;
     bool acknowledge_ = false; ///< the write-back was commanded in band
     std::uint32_t write_back_at_ = 0;
-    std::uint64_t stream_reads_ = 0, stream_writes_ = 0, stream_address_ = 0;
+    std::deque<SurfaceStream> streams_; ///< the first one runs; what is left of it
     std::uint32_t stream_outstanding_ = 0;
 };
 

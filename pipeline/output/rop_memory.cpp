@@ -11,22 +11,27 @@
 
 namespace pipeline {
 
-namespace {
-
-constexpr std::uint64_t surface_span = std::uint64_t{1} << 36U;
-
-} // namespace
-
-SectorShape Rop::sector_shape(Use use) const {
+std::vector<SurfaceBytes> Rop::memory_of(Use use) const {
     switch (use) {
     case Use::depth:
-        return {std::max(1U, pass_->depth_bytes)};
+        return {pass_->depth};
     case Use::colour:
-        return {std::max(1U, pass_->colour_bytes)};
+        return pass_->colours;
     case Use::kbuffer:
         break;
     }
-    return {pass_->end == FragmentEnd::kbuffer_list ? plan_->lists.head_bytes : pass_->program->bytes_per_pixel()};
+    if (pass_->program == nullptr) return {};
+    return {{pass_->kbuffer_address,
+             pass_->end == FragmentEnd::kbuffer_list ? plan_->lists.head_bytes : pass_->program->bytes_per_pixel()}};
+}
+
+SectorShape Rop::sector_shape(Use use) const {
+    SectorShape shape{0, ~0U};
+    for (const SurfaceBytes& surface : memory(use)) {
+        shape.pixel_bytes += surface.pixel_bytes;
+        shape.least_bytes = std::min(shape.least_bytes, surface.pixel_bytes);
+    }
+    return shape.pixel_bytes != 0 ? shape : SectorShape{1};
 }
 
 // Lines of the surface that this group owns, and some more: groups own tiles in turn, row by row.
@@ -52,8 +57,8 @@ std::uint32_t Rop::lines_that_fit(Use use) const {
     return std::min(lines, own_lines(shape));
 }
 
-std::uint64_t Rop::line_address(Use use, std::uint32_t line) const {
-    return surface_span * (static_cast<std::uint64_t>(use) + 1) + std::uint64_t{line} * cache(use).shape().line_bytes();
+std::uint64_t Rop::line_address(Use use, const SurfaceBytes& surface, std::uint32_t line) const {
+    return surface.address + std::uint64_t{line} * cache(use).shape().sectors() * 4 * surface.pixel_bytes;
 }
 
 std::span<ClearBits* const> Rop::clear_bits(Use use) const {
@@ -92,39 +97,42 @@ std::uint32_t Rop::parts_of(std::uint64_t address, std::uint32_t bytes) const {
 // The whole line, in whole bursts.
 void Rop::fetch(Use use, std::uint32_t entry) {
     constexpr std::uint64_t burst = SectorShape::burst;
-    const TileCache& lines = cache(use);
-    const std::uint64_t begin = line_address(use, lines.line(entry));
-    const std::uint64_t end = (begin + lines.shape().line_bytes() + burst - 1) / burst * burst;
-    for (std::uint64_t at = begin / burst * burst; at < end; at += largest_request) {
-        const auto bytes = static_cast<std::uint32_t>(std::min<std::uint64_t>(end - at, largest_request));
-        request(at, bytes, tag_tile | static_cast<std::uint32_t>(use) << 26U | entry, MemoryClient::tile_read, false,
-                draw_);
-        parts_coming_[static_cast<std::size_t>(use)][entry] += parts_of(at, bytes);
+    const std::uint32_t line = cache(use).line(entry);
+    for (const SurfaceBytes& surface : memory(use)) {
+        const std::uint64_t begin = line_address(use, surface, line);
+        const std::uint64_t end = (line_address(use, surface, line + 1) + burst - 1) / burst * burst;
+        for (std::uint64_t at = begin / burst * burst; at < end; at += largest_request) {
+            const auto bytes = static_cast<std::uint32_t>(std::min<std::uint64_t>(end - at, largest_request));
+            request(at, bytes, tag_tile | static_cast<std::uint32_t>(use) << 26U | entry, MemoryClient::tile_read,
+                    false, draw_);
+            parts_coming_[static_cast<std::size_t>(use)][entry] += parts_of(at, bytes);
+        }
     }
 }
 
-// The bursts that these pixels lie in, under a byte mask; returns their number of requests. A sector holds one render
-// target after the other, and of each its four pixels.
+// The bursts that these pixels lie in, under a byte mask; returns their number of requests.
 std::uint32_t Rop::write_pixels(Use use, std::uint32_t line, std::uint16_t pixels, std::uint32_t tag,
                                 std::uint32_t draw) {
     constexpr std::uint64_t burst = SectorShape::burst;
-    const SectorShape& shape = cache(use).shape();
-    const std::uint32_t of_target = std::min(shape.pixel_bytes, SectorShape::target_pixel);
-    const std::uint64_t base = line_address(use, line);
-    std::uint64_t begin = 0, end = 0; // of the run so far
     std::uint32_t parts = 0;
-    for (std::uint32_t target = 0; target < shape.pixel_bytes; target += of_target)
-        for (std::uint32_t left = pixels; left != 0; left &= left - 1) {
-            const auto pixel = static_cast<std::uint32_t>(std::countr_zero(left));
-            const std::uint64_t at = base + std::uint64_t{4} * target + std::uint64_t{pixel} * of_target;
-            const std::uint64_t first = at / burst * burst, last = (at + of_target + burst - 1) / burst * burst;
-            if (first > end) {
-                parts += write_run(begin, end, tag, draw);
-                begin = first;
+    for (const SurfaceBytes& surface : memory(use)) {
+        const std::uint32_t of_target = std::min(surface.pixel_bytes, SectorShape::target_pixel);
+        const std::uint64_t base = line_address(use, surface, line);
+        std::uint64_t begin = 0, end = 0; // of the run so far
+        for (std::uint32_t target = 0; target < surface.pixel_bytes; target += of_target)
+            for (std::uint32_t left = pixels; left != 0; left &= left - 1) {
+                const auto pixel = static_cast<std::uint32_t>(std::countr_zero(left));
+                const std::uint64_t at = base + std::uint64_t{4} * target + std::uint64_t{pixel} * of_target;
+                const std::uint64_t first = at / burst * burst, last = (at + of_target + burst - 1) / burst * burst;
+                if (first > end) {
+                    parts += write_run(begin, end, tag, draw);
+                    begin = first;
+                }
+                end = std::max(end, last);
             }
-            end = std::max(end, last);
-        }
-    return parts + write_run(begin, end, tag, draw);
+        parts += write_run(begin, end, tag, draw);
+    }
+    return parts;
 }
 
 // Returns how many parts of it memory partitions take.
@@ -275,27 +283,29 @@ bool Rop::write_back_next() {
     return true;
 }
 
-void Rop::stream(std::uint64_t read_bytes, std::uint64_t write_bytes, bool resolve) {
-    stream_reads_ = read_bytes;
-    stream_writes_ = write_bytes;
-    stream_address_ = surface_span * 8 + std::uint64_t{shape_.index} * stream_chunk;
-    sim::Counter& counter = resolve ? stats_.resolves : read_bytes != 0 ? stats_.copies : stats_.clears;
-    counter += read_bytes + write_bytes;
+void Rop::stream(const SurfaceStream& stream) {
+    if (stream.read_bytes + stream.write_bytes == 0) return;
+    sim::Counter& counter = stream.resolve ? stats_.resolves : stream.read_bytes != 0 ? stats_.copies : stats_.clears;
+    counter += stream.read_bytes + stream.write_bytes;
+    streams_.push_back(stream);
+    streams_.back().read_address += std::uint64_t{shape_.index} * stream_chunk;
+    streams_.back().write_address += std::uint64_t{shape_.index} * stream_chunk;
     wake_in(1);
 }
 
 bool Rop::stream_next() {
     if (requests_.size() + request_room > requests_.capacity()) return false;
-    const bool read = stream_reads_ > 0 && stream_reads_ >= stream_writes_;
+    SurfaceStream& stream = streams_.front();
+    const bool read = stream.read_bytes > 0 && stream.read_bytes >= stream.write_bytes;
     if (read && stream_outstanding_ >= stream_window) return false;
-    std::uint64_t& left = read ? stream_reads_ : stream_writes_;
+    std::uint64_t& left = read ? stream.read_bytes : stream.write_bytes;
+    std::uint64_t& address = read ? stream.read_address : stream.write_address;
     const auto bytes = static_cast<std::uint32_t>(std::min<std::uint64_t>(left, stream_chunk));
-    const std::uint64_t address = stream_address_ + (read ? 0 : surface_span);
     request(address, bytes, tag_stream, MemoryClient::copy, !read, draw_);
-    left -= bytes;
-    // The ROP partitions take the chunks of the surface in turn.
-    stream_address_ += read ? 0 : std::uint64_t{pass_->layout.partitions} * stream_chunk;
     stream_outstanding_ += read ? parts_of(address, bytes) : 0;
+    left -= bytes;
+    address += std::uint64_t{pass_->layout.partitions} * stream_chunk;
+    if (stream.read_bytes + stream.write_bytes == 0) streams_.pop_front();
     return true;
 }
 

@@ -38,8 +38,8 @@ std::uint32_t Rop::run_depth_colour(const Queued& queued) {
     if (use.colour) colour_tiles_.mark_dirty(queued.entry[1], colour_tiles_.shape().in_line(block, kept));
     const auto count = [](std::uint32_t pixels) { return static_cast<std::uint32_t>(std::popcount(pixels)); };
     const std::uint32_t read = use.reads_depth ? count(queued.task.mask) : 0;
-    return cycles_for((read + count(written)) * pass_->depth_bytes +
-                      (use.colour ? count(kept) * (use.keeps_colour ? 2 : 1) * pass_->colour_bytes : 0));
+    return cycles_for((read + count(written)) * pass_->depth.pixel_bytes +
+                      (use.colour ? count(kept) * (use.keeps_colour ? 2 : 1) * pass_->colour_bytes() : 0));
 }
 
 FragmentTest Rop::test_pixel(const RasterState& state, QuadId quad, SurfacePlace place, DepthCode incoming) {

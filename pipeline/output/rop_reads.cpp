@@ -113,7 +113,8 @@ void Rop::accept_read(const KBufferRead& read) {
         return;
     }
     const std::uint32_t index = free_jobs_.back();
-    const std::uint64_t address = line_address(Use::kbuffer, read.block); // a sector is a line
+    const std::uint64_t address =
+        line_address(Use::kbuffer, memory(Use::kbuffer).front(), read.block); // a sector is a line
     free_jobs_.pop_back();
     ReadJob& job = jobs_[index];
     job.read = read;

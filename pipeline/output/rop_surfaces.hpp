@@ -25,6 +25,14 @@ struct FixedSurfaces {
     std::vector<QuadId> far_winner;
 };
 
+/// Bytes that go past the caches: a clear writes, a copy reads and writes as many, a resolve writes what a fast clear
+/// left. The ROP groups take the chunks of the surface in turn.
+struct SurfaceStream {
+    std::uint64_t read_bytes = 0, write_bytes = 0; ///< of one group's share
+    std::uint64_t read_address = 0, write_address = 0;
+    bool resolve = false;
+};
+
 /// What one draw did to the output stage.
 struct DrawOutput {
     std::uint64_t quads = 0, fragments = 0, hazards = 0;

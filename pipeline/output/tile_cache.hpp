@@ -31,17 +31,18 @@ struct TileCacheStats {
 };
 static_assert(sim::fully_described<TileCacheStats>);
 
-/// How the sectors of a surface lie in lines and bursts.
+/// How the sectors of the surfaces of one use lie in lines and bursts.
 struct SectorShape {
     static constexpr std::uint32_t burst = 32;         ///< bytes
     static constexpr std::uint32_t target_pixel = 16;  ///< most bytes of a pixel of one render target
     static constexpr std::uint32_t most_of_a_line = 4; ///< sectors
 
-    std::uint32_t pixel_bytes = 16; ///< of all render targets together, at least 1
+    std::uint32_t pixel_bytes = 16;          ///< of all render targets together, at least 1
+    std::uint32_t least_bytes = pixel_bytes; ///< of a pixel of the surface that has the smallest
 
     std::uint32_t sector_bytes() const { return 4 * pixel_bytes; }
     /// Sectors of a line: 1, 2 or 4.
-    std::uint32_t sectors() const { return pixel_bytes >= 8 ? 1 : pixel_bytes >= 4 ? 2 : most_of_a_line; }
+    std::uint32_t sectors() const { return least_bytes >= 8 ? 1 : least_bytes >= 4 ? 2 : most_of_a_line; }
     std::uint32_t line_bytes() const { return sectors() * sector_bytes(); }
     std::uint32_t line_of(std::uint32_t block) const { return block / sectors(); }
     /// The pixels of `block`, given as a mask of its four, within its line.

@@ -250,17 +250,20 @@ TEST(FragmentPipeline, PeeledLayerIsReadThroughTheTextureCache) {
     EXPECT_EQ(bench.pipe.stats().l1.texture_hits, 4U);
 }
 
-// Otherwise the lines of the layer before would be found in the cache.
-TEST(FragmentPipeline, LayerOfEachPassLiesElsewhere) {
+// Depths of both ends take 8 bytes: of a tile's four quads two share a line.
+TEST(FragmentPipeline, PeeledLayerIsReadWhereItWasCopied) {
     tests::QuadPass pass;
     const pipeline::PeeledLayer layer = layer_at(0.0F, SurfaceFormat::d24, 0);
     pass.context.behind = &layer;
-    pass.quad(0, 0);
-    PipeBench one(pass), two(pass);
-    two.pipe.begin_pass(1);
-    one.run();
-    two.run();
-    EXPECT_NE(one.textures.requests().at(0).address, two.textures.requests().at(0).address);
+    pass.context.behind_address = 4096;
+    pass.context.depth.pixel_bytes = 8;
+    for (const std::uint32_t y : {0U, 2U})
+        for (const std::uint32_t x : {0U, 2U, 4U}) pass.quad(x, y);
+    PipeBench bench(pass);
+    bench.run();
+    std::vector<std::uint64_t> addresses;
+    for (const pipeline::MemoryRequest& request : bench.textures.requests()) addresses.push_back(request.address);
+    EXPECT_EQ(addresses, (std::vector<std::uint64_t>{4096, 4096 + 128, 4096 + 64, 4096 + 192}));
 }
 
 // ---- full-screen passes

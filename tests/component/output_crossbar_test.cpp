@@ -80,7 +80,7 @@ TEST(Crossbar, BytesOfAFragmentFollowFromHowThePassEnds) {
     tests::Rig rig;
     const pipeline::Crossbar unit(rig.context("crossbar"), {}, pass.context, 1);
     EXPECT_EQ(unit.bytes_per_fragment(), 4U); // depth
-    pass.context.colour_bytes = 8;
+    pass.context.colours = {{0, 8}};
     EXPECT_EQ(unit.bytes_per_fragment(), 12U);
     pass.context.end = FragmentEnd::kbuffer_blend;
     EXPECT_EQ(unit.bytes_per_fragment(), 4U); // a z entry

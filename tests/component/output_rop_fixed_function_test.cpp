@@ -187,7 +187,7 @@ TEST(RopFixedFunction, FullQueueHoldsTheCrossbarBack) {
 // Lines of two sectors: memory knows the right one. The bursts of 32 bytes are written as a whole, under a byte mask.
 TEST(RopFixedFunction, PHY_P11_ClearedSectorIsNotFetchedAndItsFirstWriteBackWritesItWhole) {
     DepthPass pass;
-    pass.context.depth_bytes = 8; // a sector is a line and a burst
+    pass.context.depth.pixel_bytes = 8; // a sector is a line and a burst
     pass.quad(0, 0, 0b0001);
     pass.quad(4, 0, 0b0001);
     RopBench bench(pass);
@@ -226,9 +226,24 @@ TEST(RopFixedFunction, PHY_P11_LineOfWhichOneSectorIsClearedIsFetched) {
     EXPECT_EQ(bench.memory.arrivals[0].request.bytes, 32U);
 }
 
+// A line is two sectors, as that many of the smaller target fill a burst: tile 1 begins with line 2.
+TEST(RopFixedFunction, EachTargetIsWrittenWhereItsSurfaceLies) {
+    ColourPass pass;
+    pass.context.colours = {{4096, 4}, {65536, 16}};
+    pass.quad(4, 0);
+    RopBench bench(pass);
+    bench.run();
+    bench.write_back();
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> written;
+    for (const auto& [request, cycle] : bench.memory.arrivals)
+        if (request.write) written.emplace_back(request.address, request.bytes);
+    EXPECT_EQ(written,
+              (std::vector<std::pair<std::uint64_t, std::uint32_t>>{{4096 + 16 * 4, 32}, {65536 + 16 * 16, 64}}));
+}
+
 TEST(RopFixedFunction, CacheThatCannotHoldAQuadIsRefused) {
     DepthPass pass;
-    pass.context.depth_bytes = 32; // a sector of 128 bytes
+    pass.context.depth.pixel_bytes = 32; // a sector of 128 bytes
     try {
         const RopBench bench(pass, {.rop = {.depth_cache_bytes = 127}});
         ADD_FAILURE() << "accepted";
@@ -254,10 +269,10 @@ TEST(RopFixedFunction, PHY_S3_RopsComeInGroupsOfFour) {
 TEST(RopFixedFunction, ClearAndCopyMoveTheirBytes) {
     const DepthPass pass;
     RopBench bench(pass);
-    bench.rop.stream(0, 1000);
+    bench.rop.stream({.write_bytes = 1000});
     bench.run();
     EXPECT_EQ(bench.memory.arrivals.size(), 4U); // 256 bytes each, and the rest
-    bench.rop.stream(512, 512);
+    bench.rop.stream({.read_bytes = 512, .write_bytes = 512, .write_address = 4096});
     bench.run();
     std::uint64_t read = 0, written = 0;
     for (const auto& [request, cycle] : bench.memory.arrivals) (request.write ? written : read) += request.bytes;
@@ -265,7 +280,7 @@ TEST(RopFixedFunction, ClearAndCopyMoveTheirBytes) {
     EXPECT_EQ(written, 1512U);
     EXPECT_EQ(bench.rop.stats().clears, 1000U);
     EXPECT_EQ(bench.rop.stats().copies, 1024U);
-    bench.rop.stream(0, 300, true);
+    bench.rop.stream({.write_bytes = 300, .resolve = true});
     bench.run();
     EXPECT_EQ(bench.rop.stats().clears, 1000U);
     EXPECT_EQ(bench.rop.stats().resolves, 300U);

@@ -76,7 +76,7 @@ class QuadPass {
     /// The pass writes one colour target of this format, as far as values go; its bytes are four a pixel.
     void write_colours(pipeline::SurfaceFormat format = pipeline::SurfaceFormat::rgba8) {
         context.targets = {format};
-        context.colour_bytes = 4;
+        context.colours = {{0, 4}};
     }
 
     const pipeline::ModifyProgram& program() const { return *program_; }

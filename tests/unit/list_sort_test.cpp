@@ -97,7 +97,7 @@ TEST(ListSort, ItsArrayTakesRegisters) {
         stream.depths.own().resize(longest);
         pipeline::FragmentLists lists({8, 8, 1});
         for (std::uint32_t i = 0; i < longest; ++i) lists.keep(0, 0, {i, i});
-        return pipeline::list_sort_pass("sort", site, *program, lists, stream).registers;
+        return pipeline::list_sort_pass("sort", site, *program, lists, 0, stream).registers;
     };
     EXPECT_EQ(registers(40, {}, 4, "rgbz"), 8U);
     ListsSite site = in_registers(24);

@@ -5,9 +5,9 @@
 #pragma once
 
 #include "pipeline/draw.hpp"
+#include "pipeline/kernel.hpp"
 #include "pipeline/output/kbuffer.hpp"
 #include "pipeline/raster_state.hpp"
-#include "pipeline/resolve.hpp"
 #include "pipeline/shader.hpp"
 #include "pipeline/surface.hpp"
 
@@ -31,8 +31,7 @@ enum class PassKind : std::uint8_t {
     clear,   ///< sets `clears` to their cleared values
     draw,    ///< rasterizes `draws`
     screen,  ///< runs `shader` on every pixel of its targets
-    compose, ///< the same without taking time: a picture of what the frame has left
-    resolve, ///< reads the finished surfaces and writes the picture, by Frame::resolve; takes no time
+    compose, ///< the same, or `kernel`, without taking time: a picture of what the frame has left
 };
 
 /// Triangles of one instance of a draw that are handed over with a draw call of their own: a run of the list that
@@ -57,7 +56,8 @@ struct Pass {
     /// Colour surfaces, one for each output of the shader, blended where a state says; no_surface: nobody reads it.
     std::vector<SurfaceId> targets;
     std::shared_ptr<const Shader> shader; ///< null: the colour of the material is the only output
-    std::vector<SurfaceId> reads;         ///< what the shader knows by its place in this list
+    std::shared_ptr<const Kernel> kernel; ///< in place of the shader; compose passes only
+    std::vector<SurfaceId> reads;         ///< what the shader or kernel knows by its place in this list
     SurfaceId depth = no_surface;         ///< tested and written as the states say, with its stencil
     SurfaceId kbuffer = no_surface;       ///< fragments go through its modify program
     bool both_faces = false;              ///< draws triangles that face away, too
@@ -134,7 +134,6 @@ struct Frame {
     std::vector<std::string> notes;               ///< what was not done as asked for, one line each
     std::vector<LeftOut> left_out;                ///< by the pass graph: culled passes, unread attributes
     std::shared_ptr<const ModifyProgram> program; ///< null when no pass has a k-buffer
-    std::shared_ptr<const Resolve> resolve;       ///< of resolve passes
     SurfaceFormat depth_format = SurfaceFormat::d24;
     SurfaceFormat colour_format = SurfaceFormat::rgba8;
     glm::vec4 background{1.0F};

@@ -333,8 +333,6 @@ RunResult Machine::run(const ReferenceImage& reference) {
         case PassKind::compose:
             compose_and_judge(number, reference);
             break;
-        case PassKind::resolve: // takes no time
-            break;
         }
     }
     units_->pass.layout = layout_of(frame_->view_of_kbuffer());

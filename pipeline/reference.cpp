@@ -2,7 +2,6 @@
 
 #include "pipeline/draw_states.hpp"
 #include "pipeline/functional/compose_pass.hpp"
-#include "pipeline/functional/composite.hpp"
 #include "pipeline/functional/fragment_operations.hpp"
 #include "pipeline/functional/parallel.hpp"
 #include "pipeline/functional/pixel_lists.hpp"
@@ -246,11 +245,6 @@ class Reference {
             if (image_.composed.count() == 0) image_.composed = SurfaceStore(frame_.surfaces);
             for (const SurfaceId surface : written_surfaces(pass)) image_.composed.share(surfaces_, surface);
             break;
-        case PassKind::resolve:
-            if (frame_.main_kbuffer() == no_surface) break;
-            read_surfaces();
-            image_.picture = composite(frame_, {image_.kbuffer, image_.colour, image_.depth});
-            break;
         }
     }
 
@@ -264,17 +258,13 @@ class Reference {
         for (const SurfaceId surface : written_surfaces(pass)) digests.push_back(surfaces_.digest(surface));
     }
 
-    void read_surfaces() {
+    void finish() {
+        CHECK(next_stream_ == streams_.size());
         const SurfaceId depth = frame_.main_depth();
         image_.kbuffer = entries_of(surfaces_, frame_.main_kbuffer());
         image_.colour = colours_of(surfaces_, frame_.main_colour());
         image_.depth = depths_of(surfaces_, depth);
         image_.stencil = stencils_of(surfaces_, depth);
-    }
-
-    void finish() {
-        CHECK(next_stream_ == streams_.size());
-        read_surfaces();
         if (frame_.needs.kbuffer && frame_.output != no_surface) image_.picture = image_.colour;
         image_.shown = surfaces_.shown();
         image_.accepted_insertions = counts_.accepted;

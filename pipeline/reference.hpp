@@ -2,7 +2,7 @@
 // every design is compared with, made of the same functional routines.
 //
 // Modelled: stencil and depth test and write in the surface's own format, blended and masked colour writes, k-buffer
-// programs, clears, the resolve pass. Not modelled: time, and whatever a design does to protect pixels.
+// programs, clears, pictures. Not modelled: time, and whatever a design does to protect pixels.
 #pragma once
 
 #include "pipeline/fragment_stream.hpp"
@@ -20,10 +20,9 @@ struct ReferenceImage {
     std::vector<float> depth;          ///< window depth per place, as the depth format holds it
     std::vector<std::uint8_t> stencil; ///< per place, where the depth format has any
     std::vector<float> colour;         ///< RGBA per place of the "colour" surface, as the colour format holds it
-    std::vector<float>
-        picture;           ///< RGBA per pixel of frames with a k-buffer: the output, or what the resolve pass makes
-    SurfaceStore composed; ///< has what passes without time wrote last, and nothing else
-    SurfaceStore shown;    ///< surfaces that reports show, and nothing else
+    std::vector<float> picture;        ///< RGBA per pixel of frames with a k-buffer: the output
+    SurfaceStore composed;             ///< has what passes without time wrote last, and nothing else
+    SurfaceStore shown;                ///< surfaces that reports show, and nothing else
 
     /// After each pass of the frame, of each surface that it writes: see written_surfaces().
     std::vector<std::vector<std::uint64_t>> digests;

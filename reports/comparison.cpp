@@ -1,7 +1,6 @@
 #include "reports/comparison.hpp"
 
 #include "models/kbuffers/design_support.hpp"
-#include "pipeline/functional/composite.hpp"
 #include "pipeline/functional/parallel.hpp"
 #include "pipeline/functional/sample_pattern.hpp"
 #include "pipeline/machine.hpp"
@@ -54,9 +53,7 @@ void check_memory(const ComparisonInput& input, const ComparisonRequest& request
                                           bytes_text(needed), limit.whose, bytes_text(limit.bytes)));
 }
 
-std::vector<float> picture_of(const pipeline::Frame& frame, const std::vector<float>& kbuffer,
-                              const std::vector<float>& colour, const std::vector<float>& depth) {
-    if (frame.resolve != nullptr) return pipeline::composite(frame, {kbuffer, colour, depth});
+std::vector<float> picture_of(const pipeline::Frame& frame, const std::vector<float>& colour) {
     return colour.size() == frame.view.places() * 4 ? pipeline::mean_of_samples(frame.view, colour, 4) : colour;
 }
 
@@ -76,9 +73,8 @@ void keep_first_sample(FramePixels& pixels, const pipeline::Frame& frame) {
 FramePixels run_pixels(const ComparisonInput& input, const std::vector<float>& reference, const ComparedDesign& design,
                        pipeline::RunResult& run) {
     FramePixels pixels{std::move(run.kbuffer), {}, std::move(run.colour), std::move(run.depth), std::move(run.shown)};
-    pixels.composite = run.wrong_pixels == 0 && design.submitted == nullptr
-                           ? reference
-                           : picture_of(*input.frame, pixels.kbuffer, pixels.colour, pixels.depth);
+    pixels.composite =
+        run.wrong_pixels == 0 && design.submitted == nullptr ? reference : picture_of(*input.frame, pixels.colour);
     keep_first_sample(pixels, *input.frame);
     return pixels;
 }
@@ -221,8 +217,7 @@ Comparison compare(ComparisonInput input, const Supervision& supervision) {
     comparison.pixels.resize(input.designs.size());
     pipeline::ReferenceImage& reference = input.reference;
     comparison.reference.composite =
-        reference.picture.empty() ? picture_of(*input.frame, reference.kbuffer, reference.colour, reference.depth)
-                                  : std::move(reference.picture);
+        reference.picture.empty() ? picture_of(*input.frame, reference.colour) : std::move(reference.picture);
     const std::vector<std::size_t> run_as = same_machines(input);
     pipeline::parallel_for(input.threads, input.designs.size(), [&](std::size_t i) {
         if (run_as[i] == i) comparison.runs[i] = run_design(input, input.designs[i], supervision);

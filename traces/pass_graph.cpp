@@ -49,7 +49,7 @@ class PassGraph::Culling {
             return;
         }
         drop_unread_writes(node);
-        // Clears, resolves and passes over the screen write every pixel, so what was there before is of no use; draws
+        // Clears, kernels and passes over the screen write every pixel, so what was there before is of no use; draws
         // write some of them.
         if (pass.kind != PassKind::draw && !keeps_targets(pass))
             for (const std::string& name : node.writes) live_.erase(name);
@@ -92,6 +92,12 @@ class PassGraph::Culling {
     std::vector<Node> kept_;
     std::vector<LeftOut> left_out_;
 };
+
+void PassGraph::Node::check_slots() const {
+    for (const std::string& name : slots)
+        if (contains(writes, name) || (!depth.empty() && name == depth))
+            throw sim::InputError(fmt::format("pass {}: it reads the surface {}, which it writes", pass.name, name));
+}
 
 PassGraph::PassGraph(Frame frame) : frame_(std::move(frame)) {
     CHECK(frame_.resources != nullptr);
@@ -160,9 +166,6 @@ void PassGraph::add_shaded(ShadedPass added) {
     node.writes = added.targets;
     if (pass.writes_depth() || pass.tests_stencil()) node.writes.push_back(added.depth);
     if (!added.kbuffer.empty()) node.writes.push_back(added.kbuffer);
-    for (const std::string& name : added.reads)
-        if (contains(node.writes, name) || (name == added.depth && pass.uses_depth()))
-            throw sim::InputError(fmt::format("pass {}: it reads the surface {}, which it writes", pass.name, name));
     node.reads = added.reads;
     if (pass.tests_depth() || pass.tests_stencil()) node.reads.push_back(added.depth);
     if (!added.kbuffer.empty()) node.reads.push_back(added.kbuffer);
@@ -170,6 +173,19 @@ void PassGraph::add_shaded(ShadedPass added) {
     node.targets = std::move(added.targets);
     if (pass.uses_depth()) node.depth = std::move(added.depth);
     node.kbuffer = std::move(added.kbuffer);
+    node.check_slots();
+}
+
+void PassGraph::add_kernel(std::string name, std::shared_ptr<const pipeline::Kernel> kernel,
+                           std::vector<std::string> reads, std::vector<std::string> targets) {
+    CHECK(kernel != nullptr);
+    Node& node = nodes_.emplace_back();
+    node.pass.name = std::move(name);
+    node.pass.kind = PassKind::compose;
+    node.pass.kernel = std::move(kernel);
+    node.reads = node.slots = std::move(reads);
+    node.writes = node.targets = std::move(targets);
+    node.check_slots();
 }
 
 Pass& PassGraph::last_draw() {
@@ -191,14 +207,6 @@ void PassGraph::set_states(std::vector<pipeline::RasterState> states, std::vecto
 }
 
 void PassGraph::use(pipeline::FragmentColour colour) { fragment_colour_ = colour; }
-
-void PassGraph::add_resolve(std::string name, std::vector<std::string> reads, std::vector<std::string> writes) {
-    Node& node = nodes_.emplace_back();
-    node.pass.name = std::move(name);
-    node.pass.kind = PassKind::resolve;
-    node.reads = std::move(reads);
-    node.writes = std::move(writes);
-}
 
 void PassGraph::output(std::string surface) { outputs_.push_back(std::move(surface)); }
 
@@ -308,10 +316,7 @@ Frame PassGraph::lower() const {
     const Offers offers = offers_of(frame);
     frame.needs = needs_of(frame, offers, fragment_colour_);
     if (frame.needs.textures) frame.resources->read_textures();
-    if (!frame.needs.kbuffer) {
-        frame.program = nullptr;
-        frame.resolve = nullptr;
-    }
+    if (!frame.needs.kbuffer) frame.program = nullptr;
     frame.left_out = left_out_;
     for (LeftOut& item : culling.left_out()) frame.left_out.push_back(std::move(item));
     list_left_out(frame, offers);

@@ -17,7 +17,7 @@ namespace traces {
 inline constexpr const char* depth_surface = "depth";
 inline constexpr const char* colour_surface = "colour";
 inline constexpr const char* kbuffer_surface = "kbuffer";
-inline constexpr const char* picture_surface = "picture"; ///< what a resolve pass writes
+inline constexpr const char* picture_surface = "picture"; ///< of a k-buffer
 
 /// A pass with a shader of its own. Surfaces are known by their names; those of add_surface() and the ones above.
 struct ShadedPass {
@@ -64,9 +64,11 @@ class PassGraph {
     /// The raster states of the pass added last, and which of them each of its draws has (none: all the first), instead
     /// of the one that add_draw() made. Tests and writes of surfaces that the pass does not name are switched off.
     void set_states(std::vector<pipeline::RasterState> states, std::vector<std::uint32_t> of_draw = {});
+    /// Makes the targets anew without taking time; throws as add_shaded().
+    void add_kernel(std::string name, std::shared_ptr<const pipeline::Kernel> kernel, std::vector<std::string> reads,
+                    std::vector<std::string> targets);
     /// What colours all passes of the frame ask their fragments for.
     void use(pipeline::FragmentColour colour);
-    void add_resolve(std::string name, std::vector<std::string> reads, std::vector<std::string> writes);
     /// This surface is what the frame is for.
     void output(std::string surface);
     /// Something the method could have had and does not use here.
@@ -83,6 +85,8 @@ class PassGraph {
         // The same, by what they are for.
         std::vector<std::string> slots, targets;
         std::string depth, kbuffer;
+
+        void check_slots() const;
     };
     struct Surface {
         pipeline::SurfaceInfo info;

@@ -56,16 +56,21 @@ struct Values {
     bool own_shaders = false;
 };
 
+/// What a pass asks its fragments for.
+std::optional<FragmentColour> asked_of(const Frame& frame, const Pass& pass, FragmentColour colour) {
+    if (pass.kernel != nullptr) return std::nullopt;
+    if (pass.shader != nullptr) return pass.shader->shape().colour;
+    if (pass.writes_colour() || (pass.runs_program() && frame.program->needs_colour())) return colour;
+    return std::nullopt;
+}
+
 Values values_of(const Frame& frame, FragmentColour colour) {
     Values values;
     for (const Pass& pass : frame.passes) {
-        std::optional<FragmentColour> wanted;
+        const std::optional<FragmentColour> wanted = asked_of(frame, pass, colour);
         if (pass.shader != nullptr) {
-            wanted = pass.shader->shape().colour;
             values.normal |= pass.shader->shape().normal;
             values.own_shaders |= pass.kind == PassKind::draw;
-        } else if (pass.writes_colour() || (pass.runs_program() && frame.program->needs_colour())) {
-            wanted = colour;
         }
         values.lit |= wanted == FragmentColour::lit;
         values.cosine |= wanted == FragmentColour::cosine;
@@ -79,9 +84,7 @@ Values values_of(const Frame& frame, FragmentColour colour) {
 Needs needs_of(const Frame& frame, const Offers& offers, FragmentColour colour) {
     Needs needs;
     for (const Pass& pass : frame.passes) {
-        needs.colours |= pass.shader != nullptr
-                             ? pass.shader->shape().colour.has_value()
-                             : pass.writes_colour() || (pass.runs_program() && frame.program->needs_colour());
+        needs.colours |= asked_of(frame, pass, colour).has_value();
         needs.depth |= pass.uses_depth();
         needs.early_depth |= pass.tests_depth() && !pass.writes_depth();
         needs.colour_surface |= pass.rasterizes() && pass.writes_colour();

@@ -5,7 +5,7 @@
 // surfaces, and only the tracer knows how surfaces are found.
 #pragma once
 
-#include "pipeline/frame.hpp"
+#include "pipeline/reference.hpp"
 #include "traces/view_rays.hpp"
 
 #include <cstdint>
@@ -129,7 +129,7 @@ struct TruthMethod {
     std::function<void(const pipeline::Frame&, TruthPicture&)> finish = {}; ///< after the last pixel; may be empty
     /// What the rasterized surfaces of its frame have for the first channel, by pixel: distances that are compared in
     /// place of the colours, where these are no fair comparison. May be empty.
-    std::function<std::vector<std::optional<double>>(const pipeline::Frame&, const pipeline::FinishedSurfaces&)>
+    std::function<std::vector<std::optional<double>>(const pipeline::Frame&, const pipeline::ReferenceImage&)>
         rasterized = {};
     std::optional<SquareLight> light = {}; ///< how much of it each pixel's surface sees is part of the truth
     /// What the truth follows from, beside scene, view and what is asked of the rays; nothing: all parameters of the

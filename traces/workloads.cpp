@@ -73,9 +73,10 @@ pipeline::Frame kbuffer_frame(const pipeline::Frame& frame, const models::MakePi
     return graph.lower();
 }
 
-pipeline::Frame resolved_frame(const pipeline::Frame& frame) {
+pipeline::Frame kbuffer_frame(const pipeline::Frame& frame, std::shared_ptr<const pipeline::Kernel> picture) {
     PassGraph graph = filled(frame, pipeline::FragmentColour::lit);
-    graph.add_resolve("resolve", {kbuffer_surface}, {picture_surface});
+    graph.add_surface(picture_surface, pipeline::SurfaceFormat::rgba32f);
+    graph.add_kernel("picture", std::move(picture), {kbuffer_surface}, {picture_surface});
     graph.output(picture_surface);
     return graph.lower();
 }

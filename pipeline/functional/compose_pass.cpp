@@ -1,5 +1,6 @@
 #include "pipeline/functional/compose_pass.hpp"
 
+#include "pipeline/functional/kernel_pass.hpp"
 #include "pipeline/functional/parallel.hpp"
 #include "pipeline/functional/surface_texel.hpp"
 #include "sim/check.hpp"
@@ -25,6 +26,7 @@ void store_quad(const Pass& pass, const ShaderInput& input, const ShaderOutput& 
 } // namespace
 
 void compose(const Pass& pass, SurfaceStore& surfaces, unsigned threads) {
+    if (pass.kernel != nullptr) return run_kernel(pass, surfaces, threads);
     CHECK_MSG(pass.writes_colour() && pass.reads.size() == pass.shader->shape().reads,
               fmt::format("pass {}: a picture is made of surfaces that its shader knows", pass.name));
     const std::uint32_t width = surfaces.info(pass.first_target()).width,

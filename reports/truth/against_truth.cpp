@@ -91,10 +91,10 @@ TruthError colour_error(const Truth& truth, const pipeline::Frame& frame, std::s
 }
 
 TruthError distance_error(const Truth& truth, const traces::TruthMethod& method, const pipeline::Frame& frame,
-                          const pipeline::FinishedSurfaces& surfaces) {
+                          const pipeline::ReferenceImage& reference) {
     CHECK(method.rasterized && !truth.channels.empty());
     const traces::TruthChannel& channel = truth.channels.front();
-    const std::vector<Distance> rasterized = method.rasterized(frame, surfaces);
+    const std::vector<Distance> rasterized = method.rasterized(frame, reference);
     CHECK(rasterized.size() == truth.pixels());
     TruthError error;
     error.what = channel.name;
@@ -118,7 +118,7 @@ std::vector<TruthError> errors_of_reference(const Truth& truth, const traces::Tr
             errors.push_back(layer_error(truth, frame, reference.kbuffer, layer));
     errors.push_back(
         method.rasterized
-            ? distance_error(truth, method, frame, {reference.kbuffer, reference.colour, reference.depth})
+            ? distance_error(truth, method, frame, reference)
             : colour_error(truth, frame, reference.picture.empty() ? reference.colour : reference.picture));
     return errors;
 }

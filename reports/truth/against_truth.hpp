@@ -48,7 +48,7 @@ TruthError colour_error(const Truth& truth, const pipeline::Frame& frame, std::s
 
 /// Of the method's first channel, which holds distances: relative error.
 TruthError distance_error(const Truth& truth, const traces::TruthMethod& method, const pipeline::Frame& frame,
-                          const pipeline::FinishedSurfaces& surfaces);
+                          const pipeline::ReferenceImage& reference);
 
 /// The layers that the frame keeps, and distances or colours as the method says, for the frame in submission order.
 std::vector<TruthError> errors_of_reference(const Truth& truth, const traces::TruthMethod& method,

@@ -94,8 +94,7 @@ TEST_F(TruthTest, SolidsAreWhereTheFrameHasThem) {
             "gen:csg",
             {.width = 192, .height = 192, .workload = "csg", .knobs = {fmt::format("expression={}", expression)}});
         const Traced beside = traced(replay);
-        const auto error =
-            reports::distance_error(beside.truth, beside.method, replay.frame, {replay.reference.kbuffer, {}, {}});
+        const auto error = reports::distance_error(beside.truth, beside.method, replay.frame, replay.reference);
         EXPECT_TRUE(error.holds()) << text_of(error);
         EXPECT_GT(error.compared, 1000U);
     }

@@ -123,4 +123,19 @@ TEST(DepthOfField, ImpossibleLensesAndRangesAreRefused) {
     EXPECT_EQ(error_of({}), "");
 }
 
+TEST(DepthOfField, WrongPixelsAreBlurredWithTheOthers) {
+    const Replay replay("gen:slabs", {.width = 48, .height = 48, .workload = "depth-of-field"});
+    for (const char* design : {"blender", "existing"}) {
+        SCOPED_TRACE(design);
+        const pipeline::RunResult run = replay.run(design);
+        ASSERT_EQ(run.judgements.size(), 2U);
+        const pipeline::PassJudgement& picture = run.judgements.back();
+        EXPECT_EQ(picture.surface, "picture");
+        EXPECT_EQ(picture.wrong, 0U); // it shows what is there
+        EXPECT_EQ(picture.other_inputs, run.wrong_pixels != 0);
+        EXPECT_EQ(run.colour == replay.reference.picture, run.wrong_pixels == 0);
+        EXPECT_EQ(run.wrong_pixels == 0, design == std::string("blender"));
+    }
+}
+
 } // namespace workload_depth_of_field_test

@@ -1,5 +1,6 @@
 // A workload made outside of the library, through its public headers alone: the worked example of traces/README.md.
 #include "models/programs/nearest_k.hpp"
+#include "models/programs/picture_shader.hpp"
 #include "reports/accuracy/accuracy.hpp"
 #include "reports/kbuffer_layout.hpp"
 #include "reports/left_out.hpp"
@@ -32,46 +33,31 @@ double light_behind(std::size_t surfaces, float haze) {
     return std::pow(1.0 - static_cast<double>(haze), static_cast<double>(surfaces));
 }
 
-/// White light, of which each surface takes the same share.
-class HazePicture final : public pipeline::Resolve {
-  public:
-    explicit HazePicture(float haze) : haze_(haze) {}
-
-    std::vector<float> picture(const pipeline::Frame& frame,
-                               const pipeline::FinishedSurfaces& finished) const override {
-        std::vector<float> picture;
-        for (const float count : counts(frame, finished)) {
-            const auto light = static_cast<float>(light_behind(static_cast<std::size_t>(count), haze_));
-            picture.insert(picture.end(), {light, light, light, 1.0F});
-        }
-        return picture;
-    }
-
-  private:
-    static std::vector<float> counts(const pipeline::Frame& frame, const pipeline::FinishedSurfaces& finished) {
-        const reports::KBufferLayout layout(*frame.program);
-        std::vector<float> counts(frame.view.pixels());
-        for (std::size_t pixel = 0; pixel < counts.size(); ++pixel)
+/// The light behind everything, of which each surface takes the same share.
+models::MakePicture haze_picture(float haze) {
+    return [haze](const models::PictureSetup& setup) {
+        const reports::KBufferLayout layout(*setup.program);
+        const auto colour = [layout, haze, floats = setup.program->floats_per_pixel()](
+                                const models::PicturePlace&, const float* pixel, const glm::vec3& behind) {
+            std::size_t surfaces = 0;
             for (std::uint32_t layer = 0; layer < layout.layers(); ++layer)
-                counts[pixel] += layout.is_empty(finished.kbuffer, pixel, layer) ? 0.0F : 1.0F;
-        return counts;
-    }
-
-    float haze_;
-};
+                surfaces += layout.is_empty({pixel, floats}, 0, layer) ? 0 : 1;
+            return behind * static_cast<float>(light_behind(surfaces, haze));
+        };
+        return models::picture_shader(setup, 2 * layout.layers(), colour); // a compare and a product for each
+    };
+}
 
 pipeline::Frame build(const traces::Scene& scene, const pipeline::View& view, const HazeParams& params) {
     pipeline::Frame frame = traces::frame_of(scene, view);
     frame.program = models::make_nearest_k(models::EntryKind::z, params.k);
-    frame.resolve = std::make_shared<const HazePicture>(params.haze);
     std::vector<std::uint32_t> all(frame.draws.size());
     std::iota(all.begin(), all.end(), 0U);
-    traces::PassGraph graph(std::move(frame));
+    traces::PassGraph graph(frame);
     graph.add_clear("clear", {traces::kbuffer_surface});
     graph.add_draw("haze", {}, {traces::kbuffer_surface}, std::move(all), true);
-    graph.add_resolve("light", {traces::kbuffer_surface}, {traces::picture_surface});
+    traces::add_picture(graph, frame, haze_picture(params.haze));
     graph.leave_out("pass sky", "haze is lit from everywhere");
-    graph.output(traces::picture_surface);
     return graph.lower();
 }
 

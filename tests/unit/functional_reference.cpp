@@ -1,5 +1,4 @@
-// SEQ: frames in submission order; the constant-distance mode; the composited picture.
-#include "pipeline/functional/composite.hpp"
+// SEQ: frames in submission order; the constant-distance mode.
 #include "pipeline/functional/front_end.hpp"
 #include "pipeline/reference.hpp"
 #include "sim/check.hpp"

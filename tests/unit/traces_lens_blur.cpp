@@ -1,6 +1,7 @@
 // Circles of confusion and the discs that they blur with.
 #include "traces/workloads/lens_blur.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <numbers>
@@ -8,6 +9,7 @@
 namespace {
 
 using traces::DiscAccumulator;
+using traces::Discs;
 using traces::Lens;
 
 TEST(Lens, CircleOfConfusionIsThatOfAThinLens) {
@@ -22,7 +24,8 @@ TEST(Lens, CircleOfConfusionIsThatOfAThinLens) {
 
 TEST(Discs, OfOnePixelOrLessLeaveItAsItIs) {
     for (const double diameter : {0.0, 0.5, 1.0}) {
-        DiscAccumulator discs(5, 5);
+        const Discs shapes(1.0);
+        DiscAccumulator discs(shapes, 5, 0, 5);
         discs.add(2, 3, diameter, {0.25F, 0.5F, 0.75F});
         const auto picture = discs.picture();
         for (std::size_t i = 0; i < picture.size(); ++i)
@@ -33,7 +36,8 @@ TEST(Discs, OfOnePixelOrLessLeaveItAsItIs) {
 TEST(Discs, WeighOneAndAreRoundAndAsWideAsAsked) {
     for (const double diameter : {2.0, 3.5, 8.0, 20.0, 63.75}) {
         constexpr int size = 81, middle = 40;
-        DiscAccumulator discs(size, size);
+        const Discs shapes(64.0);
+        DiscAccumulator discs(shapes, size, 0, size);
         discs.add(middle, middle, diameter, glm::vec3(1.0F));
         const auto picture = discs.picture();
         double sum = 0.0, moment = 0.0;
@@ -59,7 +63,8 @@ TEST(Discs, WeighOneAndAreRoundAndAsWideAsAsked) {
 TEST(Discs, OfOneSizeSpreadAnEdgeOverTheirDiameter) {
     constexpr std::uint32_t size = 64;
     constexpr double diameter = 10.0;
-    DiscAccumulator discs(size, size);
+    const Discs shapes(diameter);
+    DiscAccumulator discs(shapes, size, 0, size);
     for (std::uint32_t y = 0; y < size; ++y)
         for (std::uint32_t x = 0; x < size / 2; ++x) discs.add(x, y, diameter, glm::vec3(1.0F));
     const auto picture = discs.picture();
@@ -74,13 +79,41 @@ TEST(Discs, OfOneSizeSpreadAnEdgeOverTheirDiameter) {
 }
 
 TEST(Discs, BeyondTheBorderAreCutOff) {
-    DiscAccumulator discs(3, 2);
+    const Discs shapes(500.0);
+    DiscAccumulator discs(shapes, 3, 0, 2);
     discs.add(0, 0, 500.0, glm::vec3(0.5F));
     for (const glm::vec4& pixel : discs.picture()) {
         EXPECT_GT(pixel.a, 0.0F);
         EXPECT_LT(pixel.a, 1e-4F);
         EXPECT_NEAR(pixel.r, 0.5F, 1e-6F);
     }
+}
+
+TEST(Discs, ReachNoFurtherThanTheLargest) {
+    for (const double diameter : {0.0, 1.0, 2.0, 9.75, 64.0}) {
+        const Discs shapes(diameter);
+        std::uint32_t reach = 0;
+        for (const Discs::Run& run : shapes.disc(diameter)) reach = std::max(reach, std::uint32_t(std::abs(run.row)));
+        EXPECT_EQ(reach, shapes.reach()) << diameter;
+    }
+}
+
+TEST(Discs, GiveEachRowTheSameWhateverOthersThereAre) {
+    constexpr std::uint32_t width = 23, height = 37;
+    const Discs shapes(40.0);
+    const auto picture = [&](std::uint32_t first, std::uint32_t rows) {
+        DiscAccumulator discs(shapes, width, first, rows);
+        for (std::uint32_t i = 0; i < width * height; ++i)
+            discs.add(i % width, i / width, static_cast<double>(i * 7 % 161) / 4.0,
+                      glm::vec3(0.1F, 0.3F, 0.7F) * static_cast<float>(i % 5));
+        return discs.picture();
+    };
+    const std::vector<glm::vec4> whole = picture(0, height);
+    for (const std::uint32_t rows : {1U, 16U, 30U})
+        for (std::uint32_t first = 0; first < height; first += rows) {
+            const std::vector<glm::vec4> strip = picture(first, std::min(rows, height - first));
+            EXPECT_TRUE(std::equal(strip.begin(), strip.end(), whole.begin() + first * width)) << first << ' ' << rows;
+        }
 }
 
 } // namespace

@@ -38,6 +38,12 @@ Frame frame_with(const Names& settings, const std::string& workload = "transpare
     return traces::build_frame(scene(), traces::make_view(scene(), "auto", 64, 64), workload, options);
 }
 
+class NothingKernel final : public pipeline::Kernel {
+  public:
+    pipeline::KernelShape shape() const override { return {.reads = 1}; }
+    void run(const glm::uvec2&, pipeline::SurfaceAccess&, pipeline::KernelStores&) const override {}
+};
+
 Names pass_names(const Frame& frame) {
     Names names;
     for (const Pass& pass : frame.passes) names.push_back(pass.name);
@@ -92,13 +98,29 @@ TEST(PassGraph, ChainsOfReadersKeepTheirPasses) {
     traces::PassGraph graph(empty_frame());
     graph.add_draw("first", {}, {"depth"}, {0});
     graph.add_draw("second", {"depth"}, {"colour"}, {1});
-    graph.add_resolve("last", {"colour"}, {"picture"});
+    graph.add_surface("picture", pipeline::SurfaceFormat::rgba32f);
+    graph.add_kernel("last", std::make_shared<NothingKernel>(), {"colour"}, {"picture"});
     graph.output("picture");
     const Frame frame = graph.lower();
     EXPECT_EQ(pass_names(frame), (Names{"first", "second", "last"}));
     EXPECT_TRUE(frame.passes[1].states[0].depth.test);
     EXPECT_FALSE(frame.passes[1].states[0].depth.write);
     EXPECT_TRUE(frame.needs.early_depth);
+    ASSERT_EQ(frame.passes[2].reads, std::vector<pipeline::SurfaceId>{frame.passes[1].targets[0]});
+    ASSERT_EQ(frame.passes[2].targets, std::vector<pipeline::SurfaceId>{frame.output});
+    EXPECT_EQ(frame.surfaces[frame.output].name, "picture");
+}
+
+TEST(PassGraph, KernelsAskFragmentsForNothing) {
+    traces::PassGraph graph(empty_frame());
+    graph.add_surface("picture", pipeline::SurfaceFormat::rgba32f);
+    graph.add_draw("depths", {}, {"depth"}, {0});
+    graph.add_kernel("picture", std::make_shared<NothingKernel>(), {"depth"}, {"picture"});
+    graph.output("picture");
+    const Frame frame = graph.lower();
+    EXPECT_EQ(pass_names(frame), (Names{"depths", "picture"}));
+    EXPECT_FALSE(frame.needs.colours);
+    EXPECT_FALSE(frame.needs.colour_surface);
 }
 
 TEST(PassGraph, PassesWithoutDrawsAreCulled) {

@@ -60,11 +60,11 @@ pipeline::Frame frame_of_surfaces(const Scene& scene, const pipeline::Frame& of_
 }
 
 std::vector<std::optional<double>> opaque_distances(const pipeline::Frame& frame,
-                                                    const pipeline::FinishedSurfaces& surfaces) {
+                                                    const pipeline::ReferenceImage& reference) {
     const pipeline::EyeDepth eye(frame.view.projection);
     std::vector<std::optional<double>> distances;
-    distances.reserve(surfaces.depth.size());
-    for (const float window : surfaces.depth)
+    distances.reserve(reference.depth.size());
+    for (const float window : reference.depth)
         distances.push_back(window < 1.0F ? std::optional(eye.distance(window)) : std::nullopt);
     return distances;
 }

@@ -78,8 +78,8 @@ TruthMethod truth(const Scene&, const pipeline::Frame& frame, const CsgParams& p
     method.finish = [solid](const pipeline::Frame& drawn, TruthPicture& picture) {
         picture.colours = shaded(drawn, *solid);
     };
-    method.rasterized = [expression](const pipeline::Frame& drawn, const pipeline::FinishedSurfaces& surfaces) {
-        return distances_of(csg_surface(drawn, surfaces.kbuffer, *expression));
+    method.rasterized = [expression](const pipeline::Frame& drawn, const pipeline::ReferenceImage& reference) {
+        return distances_of(csg_surface(drawn, reference.kbuffer, *expression));
     };
     return method;
 }

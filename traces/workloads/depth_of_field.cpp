@@ -5,8 +5,9 @@
 // here.
 #include "models/programs/depth_partition.hpp"
 #include "models/programs/nearest_k.hpp" // empty_depth
+#include "pipeline/functional/eye_depth.hpp"
+#include "pipeline/sample_planes.hpp"
 #include "sim/check.hpp"
-#include "traces/view_rays.hpp"
 #include "traces/workloads/lens_blur.hpp"
 #include "traces/workloads/methods.hpp"
 
@@ -46,42 +47,92 @@ struct DepthOfFieldParams {
 };
 static_assert(sim::fully_described<DepthOfFieldParams>);
 
-class DepthOfFieldPicture final : public pipeline::Resolve {
-  public:
-    DepthOfFieldPicture(const Lens& lens, double largest_blur) : lens_(lens), largest_blur_(largest_blur) {}
+constexpr std::uint32_t rows_of_group = 16; // the more, the fewer groups find a surface within reach
 
-    std::vector<float> picture(const pipeline::Frame& frame,
-                               const pipeline::FinishedSurfaces& surfaces) const override {
-        const std::span<const float> kbuffer = surfaces.kbuffer;
-        std::vector<glm::vec3> colours(kbuffer.size() / frame.program->floats_per_pixel(), glm::vec3(frame.background));
-        for (std::uint32_t slot = frame.program->k(); slot-- > 0;) {
-            const std::vector<glm::vec4> layer = blurred(frame, kbuffer, slot);
-            for (std::size_t i = 0; i < colours.size(); ++i)
-                colours[i] = glm::mix(colours[i], glm::vec3(layer[i]), layer[i].a);
+/// A group is a strip of rows as wide as the picture: it adds up what of the discs falls there.
+class LensKernel final : public pipeline::Kernel {
+  public:
+    LensKernel(const pipeline::Frame& frame, const Lens& lens, double largest_blur)
+        : program_(frame.program),
+          view_(frame.view),
+          depth_(frame.view.projection),
+          background_(frame.background),
+          lens_(lens),
+          largest_blur_(largest_blur),
+          discs_(largest_blur) {}
+
+    pipeline::KernelShape shape() const override {
+        return {.reads = 1, .groups = {1, (view_.height + rows_of_group - 1) / rows_of_group}};
+    }
+
+    void run(const glm::uvec2& group, pipeline::SurfaceAccess& surfaces,
+             pipeline::KernelStores& stores) const override {
+        const std::uint32_t first = group.y * rows_of_group;
+        const Strip strip{first, std::min(rows_of_group, view_.height - first)};
+        std::vector<glm::dvec3> sums(std::size_t{view_.width} * strip.rows);
+        for (std::uint32_t sample = 0; sample < view_.samples; ++sample) {
+            const std::vector<glm::vec3> colours = picture(surfaces, strip, sample);
+            for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += glm::dvec3(colours[i]);
         }
-        std::vector<float> picture;
-        picture.reserve(colours.size() * 4);
-        for (const glm::vec3& colour : colours) picture.insert(picture.end(), {colour.r, colour.g, colour.b, 1.0F});
-        return picture;
+        auto sum = sums.begin();
+        for (std::uint32_t y = first; y < first + strip.rows; ++y)
+            for (std::uint32_t x = 0; x < view_.width; ++x, ++sum)
+                stores.store(0, x, y, 0, {glm::vec3(*sum / static_cast<double>(view_.samples)), 1.0F});
     }
 
   private:
-    std::vector<glm::vec4> blurred(const pipeline::Frame& frame, std::span<const float> kbuffer,
-                                   std::uint32_t slot) const {
-        const ViewRays rays(frame.view);
-        DiscAccumulator discs(frame.view.width, frame.view.height);
-        const float* entry = kbuffer.data() + std::size_t{slot} * frame.program->floats_per_entry();
-        for (std::uint32_t y = 0; y < frame.view.height; ++y)
-            for (std::uint32_t x = 0; x < frame.view.width; ++x, entry += frame.program->floats_per_pixel()) {
-                if (entry[3] == models::empty_depth) continue;
-                const double blur = lens_.circle_of_confusion(rays.distance(entry[3]));
-                discs.add(x, y, std::min(blur, largest_blur_), {entry[0], entry[1], entry[2]});
-            }
-        return discs.picture();
+    struct Strip {
+        std::uint32_t first = 0, rows = 0;
+    };
+
+    // Of one sample of each pixel.
+    std::vector<glm::vec3> picture(pipeline::SurfaceAccess& surfaces, const Strip& strip, std::uint32_t sample) const {
+        std::vector<DiscAccumulator> slots(program_->k(),
+                                           DiscAccumulator(discs_, view_.width, strip.first, strip.rows));
+        const std::uint32_t reach = discs_.reach(), end = std::min(strip.first + strip.rows + reach, view_.height);
+        for (std::uint32_t y = strip.first - std::min(strip.first, reach); y < end; ++y)
+            add_row(surfaces, y, sample, slots);
+        std::vector<glm::vec3> colours(std::size_t{view_.width} * strip.rows, background_);
+        for (auto slot = slots.rbegin(); slot != slots.rend(); ++slot) {
+            const std::vector<glm::vec4> layer = slot->picture();
+            for (std::size_t i = 0; i < colours.size(); ++i)
+                colours[i] = glm::mix(colours[i], glm::vec3(layer[i]), layer[i].a);
+        }
+        return colours;
     }
 
+    // Reads four pixels side by side at a time.
+    void add_row(pipeline::SurfaceAccess& surfaces, std::uint32_t y, std::uint32_t sample,
+                 std::vector<DiscAccumulator>& slots) const {
+        pipeline::LaneIndices row;
+        row.fill(static_cast<std::int32_t>(sample * pipeline::plane_rows(view_.height, view_.samples) + y));
+        for (std::uint32_t x = 0; x < view_.width; x += 4) {
+            const auto first = static_cast<std::int32_t>(x);
+            const unsigned pixels = 15U >> (4 - std::min(4U, view_.width - x));
+            const auto entries =
+                surfaces.pixels(0, {first, first + 1, first + 2, first + 3}, row, pixels, 0, program_->targets());
+            for (std::uint32_t i = 0; i < 4; ++i)
+                if (entries[i] != nullptr) add_pixel(x + i, y, entries[i], slots);
+        }
+    }
+
+    void add_pixel(std::uint32_t x, std::uint32_t y, const float* entry, std::vector<DiscAccumulator>& slots) const {
+        for (DiscAccumulator& slot : slots) {
+            if (entry[3] != models::empty_depth) {
+                const double blur = lens_.circle_of_confusion(depth_.distance(entry[3]));
+                slot.add(x, y, std::min(blur, largest_blur_), {entry[0], entry[1], entry[2]});
+            }
+            entry += program_->floats_per_entry();
+        }
+    }
+
+    std::shared_ptr<const pipeline::ModifyProgram> program_;
+    pipeline::View view_;
+    pipeline::EyeDepth depth_;
+    glm::vec3 background_;
     Lens lens_;
     double largest_blur_;
+    Discs discs_;
 };
 
 struct Extent {
@@ -139,9 +190,9 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const Dept
     const Extent extent = extent_of(scene, view);
     pipeline::Frame frame = frame_of(scene, view);
     frame.program = models::make_depth_partition(bounds_of(params, extent, view));
-    frame.resolve = std::make_shared<const DepthOfFieldPicture>(lens_of(params, extent, view), params.largest_blur);
     frame.background = {params.background[0], params.background[1], params.background[2], 1.0F};
-    return resolved_frame(frame);
+    return kbuffer_frame(frame,
+                         std::make_shared<const LensKernel>(frame, lens_of(params, extent, view), params.largest_blur));
 }
 
 } // namespace

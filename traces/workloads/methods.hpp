@@ -64,8 +64,8 @@ void add_picture(PassGraph& graph, const pipeline::Frame& frame, const models::M
 /// program, and the picture.
 pipeline::Frame kbuffer_frame(const pipeline::Frame& frame, const models::MakePicture& picture,
                               pipeline::FragmentColour colour = pipeline::FragmentColour::lit);
-/// With a picture that frame.resolve makes.
-pipeline::Frame resolved_frame(const pipeline::Frame& frame);
+/// With a picture that a kernel makes.
+pipeline::Frame kbuffer_frame(const pipeline::Frame& frame, std::shared_ptr<const pipeline::Kernel> picture);
 
 /// The workload with `change(options, name)` applied to what it is given: as_text(), as_list(), own_k().
 Workload taking(Workload workload, void (*change)(WorkloadOptions&, const std::string&), std::string name);

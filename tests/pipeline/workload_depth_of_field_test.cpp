@@ -131,7 +131,7 @@ TEST(DepthOfField, WrongPixelsAreBlurredWithTheOthers) {
         ASSERT_EQ(run.judgements.size(), 2U);
         const pipeline::PassJudgement& picture = run.judgements.back();
         EXPECT_EQ(picture.surface, "picture");
-        EXPECT_EQ(picture.wrong, 0U); // it shows what is there
+        EXPECT_EQ(picture.wrong_places, 0U); // it shows what is there
         EXPECT_EQ(picture.other_inputs, run.wrong_pixels != 0);
         EXPECT_EQ(run.colour == replay.reference.picture, run.wrong_pixels == 0);
         EXPECT_EQ(run.wrong_pixels == 0, design == std::string("blender"));

@@ -5,10 +5,12 @@
 #include "sim/check.hpp"
 #include "traces/pass_graph.hpp"
 
+#include <array>
 #include <functional>
 #include <gtest/gtest.h>
-#include <numeric>
-#include <tuple>
+#include <memory>
+#include <string>
+#include <vector>
 
 namespace kernel_pass_test {
 
@@ -138,10 +140,10 @@ TEST(KernelPass, TwoWritersOfATexelAreRefusedWithBothNames) {
 }
 
 TEST(KernelPass, OnlyTexelsThatItsTargetsHaveCanBeStored) {
-    for (const auto& [target, x, y, plane] :
-         {std::tuple{1U, 4U, 0U, 0U}, std::tuple{1U, 0U, 4U, 0U}, std::tuple{0U, 0U, 0U, 2U}}) {
-        const auto beside = [=](const glm::uvec2&, SurfaceAccess&, KernelStores& stores) {
-            stores.store(target, x, y, plane, glm::vec4(0.0F));
+    using Store = KernelStores::Store;
+    for (const Store& one : {Store{.target = 1, .x = 4}, Store{.target = 1, .y = 4}, Store{.target = 0, .plane = 2}}) {
+        const auto beside = [one](const glm::uvec2&, SurfaceAccess&, KernelStores& stores) {
+            stores.store(one.target, one.x, one.y, one.plane, one.value);
         };
         EXPECT_NE(refusal(pass_of({.targets = 2, .reads = 1}, beside)).find("which it does not have"),
                   std::string::npos);
@@ -162,7 +164,9 @@ TEST(KernelPass, WhatNobodyReadsIsNotKept) {
 TEST(KernelPass, ItsOwnTargetCannotBeRead) {
     EXPECT_NE(refusal(pass_of(copying, copy, {1, 0})).find("pass count: it reads its target source"),
               std::string::npos);
-    traces::PassGraph graph(pipeline::Frame{.resources = std::make_shared<pipeline::Resources>()});
+    pipeline::Frame frame;
+    frame.resources = std::make_shared<pipeline::Resources>();
+    traces::PassGraph graph(frame);
     EXPECT_THROW(
         graph.add_kernel("count", std::make_shared<FunctionKernel>(copying, copy), {"large"}, {"small", "large"}),
         sim::InputError);

@@ -93,7 +93,8 @@ TEST(Discs, ReachNoFurtherThanTheLargest) {
     for (const double diameter : {0.0, 1.0, 2.0, 9.75, 64.0}) {
         const Discs shapes(diameter);
         std::uint32_t reach = 0;
-        for (const Discs::Run& run : shapes.disc(diameter)) reach = std::max(reach, std::uint32_t(std::abs(run.row)));
+        for (const Discs::Run& run : shapes.disc(diameter))
+            reach = std::max(reach, static_cast<std::uint32_t>(std::abs(run.row)));
         EXPECT_EQ(reach, shapes.reach()) << diameter;
     }
 }

@@ -137,7 +137,6 @@ struct Frame {
     SurfaceFormat depth_format = SurfaceFormat::d24;
     SurfaceFormat colour_format = SurfaceFormat::rgba8;
     glm::vec4 background{1.0F};
-    float opacity = 0.5F; ///< uniform alpha of composited layers (A11); scales that of every blended write, too
 
     const View& view_of(const Pass& pass) const { return pass.view == 0 ? view : other_views.at(pass.view - 1); }
     /// Of the first pass that fills the k-buffer, as large as those of the others; that of the eye where there is none.

@@ -61,7 +61,6 @@ void Machine::build() {
     units.cleared.resize(frame_->surfaces.size());
     diverged_.resize(frame_->surfaces.size());
     PassContext& pass = units.pass;
-    pass.frame = frame_;
     pass.program = frame_->program.get();
     pass.layout = layout_of(frame_->view_of_kbuffer());
     pass.peel = plan_.passes;

@@ -33,7 +33,7 @@ struct PendingStore {
 /// through.
 bool counts_complexity(const Frame& frame, const Pass& pass) {
     if (pass.runs_program() || frame.program != nullptr) return pass.runs_program();
-    return pass.kind == PassKind::draw && pass.view == 0 && (pass.shader == nullptr || pass.uses_depth());
+    return pass.kind == PassKind::draw && pass.view == 0 && (!pass.reads_surfaces() || pass.uses_depth());
 }
 
 /// Runs the fragments of one draw pass, pixel by pixel: a pixel's depth, stencil and colours are in hand while its
@@ -117,10 +117,8 @@ class PassRunner {
 
     void store_colour(const RasterState& state, QuadId quad, std::size_t target) {
         if (state.write_mask[target] == 0) return;
-        glm::vec4 source = stream_.output(target, quad, lane_);
-        if (state.blend[target].enabled && pass_.shader == nullptr) source.a *= frame_.opacity;
-        colours_[target] =
-            write_colour(formats_[target], state.blend[target], state.write_mask[target], source, colours_[target]);
+        colours_[target] = write_colour(formats_[target], state.blend[target], state.write_mask[target],
+                                        stream_.output(target, quad, lane_), colours_[target]);
         coloured_ = true;
     }
 

@@ -8,19 +8,17 @@ void TruthPicture::set_colour(std::size_t pixel, const glm::dvec3& colour) {
     colours[pixel * 4 + 3] = 1.0F;
 }
 
-TruthMethod layered_truth() {
+TruthMethod layered_truth(float opacity) {
     TruthMethod method;
-    method.pixel = [](Rays& rays, const PixelSurfaces& surfaces, std::uint32_t x, std::uint32_t y,
-                      TruthPicture& picture) {
-        const pipeline::Frame& frame = rays.frame();
-        const auto opacity = static_cast<double>(frame.opacity);
+    method.pixel = [alpha = static_cast<double>(opacity)](Rays& rays, const PixelSurfaces& surfaces, std::uint32_t x,
+                                                          std::uint32_t y, TruthPicture& picture) {
         glm::dvec3 colour(0.0);
         double transmitted = 1.0;
         for (const FrameSurface& layer : surfaces.layers) {
-            colour += transmitted * opacity * glm::dvec3(layer.colour);
-            transmitted *= 1.0 - opacity;
+            colour += transmitted * alpha * glm::dvec3(layer.colour);
+            transmitted *= 1.0 - alpha;
         }
-        colour += transmitted * glm::dvec3(surfaces.has_opaque ? surfaces.opaque.colour : frame.background);
+        colour += transmitted * glm::dvec3(surfaces.has_opaque ? surfaces.opaque.colour : rays.frame().background);
         picture.set_colour(picture.pixel(x, y), colour);
     };
     return method;

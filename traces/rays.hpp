@@ -137,8 +137,8 @@ struct TruthMethod {
     std::optional<std::string> key = {};
 };
 
-/// Layers composited front to back over the opaque surface or the background, with the frame's opacity (specification
-/// 004, A11).
-TruthMethod layered_truth();
+/// Layers, all of this opacity, composited front to back over the opaque surface or the background (specification 004,
+/// A11).
+TruthMethod layered_truth(float opacity = 1.0F);
 
 } // namespace traces

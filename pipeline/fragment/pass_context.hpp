@@ -38,7 +38,6 @@ struct SurfaceBytes {
 struct PassContext {
     const FragmentStream* stream = nullptr;
     const ModifyProgram* program = nullptr;
-    const Frame* frame = nullptr;
     const Pass* pass = nullptr;
     const SurfaceStore* surfaces = nullptr; ///< of the frame, for shaders and early tests that read them
     SurfaceLayout layout;

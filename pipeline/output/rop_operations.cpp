@@ -68,8 +68,7 @@ void Rop::store_colours(const RasterState& state, QuadId quad, std::uint32_t pix
     for (std::size_t target = 0; target < fixed.targets.size(); ++target) {
         if (!pass_->targets[target] || state.write_mask[target] == 0) continue;
         const SurfaceFormat format = *pass_->targets[target];
-        glm::vec4 source = pass_->stream->output(target, quad, pixel);
-        if (state.blend[target].enabled && !pass_->runs_shader()) source.a *= pass_->frame->opacity;
+        const glm::vec4 source = pass_->stream->output(target, quad, pixel);
         std::byte* texel = fixed.surfaces->written(fixed.targets[target], place);
         const glm::vec4 stored = unpack_texel(format, texel);
         pack_colour(format, write_colour(format, state.blend[target], state.write_mask[target], source, stored), texel);

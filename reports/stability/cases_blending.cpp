@@ -270,13 +270,13 @@ void add_many_layers(std::vector<Case>& cases) {
              finding.require(run.wrong_pixels == 0, "equals the frame in submission order");
              std::array<Quad, 3> exact{1, 1, 1};
              const auto& stream = replay.streams[0];
+             finding.require(stream.colours.at(0)[0].a == 0.0625F, "the opacity is in the fragments");
              for (std::size_t i = 0; i < stream.quads.size(); ++i) {
                  const pipeline::Quad& quad = stream.quads[i];
                  if (quad.x != 0 || quad.y != 0 || (quad.alive & 1U) == 0) continue;
                  const glm::vec4 colour = stream.colours[i][0];
                  for (std::size_t c = 0; c < 3; ++c)
-                     exact[c] = exact[c] * (1 - Quad(0.0625F) * Quad(colour.a)) +
-                                Quad(colour[static_cast<int>(c)]) * Quad(0.0625F) * Quad(colour.a);
+                     exact[c] = exact[c] * (1 - Quad(colour.a)) + Quad(colour[static_cast<int>(c)]) * Quad(colour.a);
              }
              for (std::size_t c = 0; c < 3; ++c)
                  finding.error((static_cast<double>(run.colour[c]) - static_cast<double>(exact[c])) * 255.0);

@@ -24,12 +24,10 @@ struct DepthPass : tests::QuadPass {
     }
 };
 struct ColourPass : tests::QuadPass {
-    pipeline::Frame frame;
     explicit ColourPass(const pipeline::BlendState& blend = {}) {
         pipeline::RasterState state;
         state.blend[0] = blend;
         context.states = pipeline::DrawStates(state);
-        context.frame = &frame;
         write_colours(pipeline::SurfaceFormat::rgba32f);
     }
 };
@@ -88,7 +86,6 @@ TEST(RopFixedFunction, OpaqueColourIsNotFetchedAndBlendedColourIs) {
     for (const pipeline::BlendState& blend : {pipeline::BlendState{}, sum}) {
         const bool opaque = !blend.enabled;
         ColourPass pass(blend);
-        pass.frame.opacity = 1.0F;
         pass.quad(0, 0, 1);
         pass.stream.colours[0][0] = {0.25F, 0.5F, 0.0F, 1.0F};
         RopBench bench(pass);
@@ -106,8 +103,6 @@ TEST(RopFixedFunction, OpaqueColourIsNotFetchedAndBlendedColourIs) {
 TEST(RopFixedFunction, PortOfTheCacheSetsTheRate) {
     const auto cycles_per_quad = [](bool colour, const pipeline::BlendState& blend, float depth, std::uint32_t port) {
         DepthPass pass(blend);
-        pipeline::Frame frame;
-        pass.context.frame = &frame;
         if (colour) pass.write_colours();
         for (const std::uint32_t block : {0U, 1U, 2U, 3U}) pass.quad(block % 2 * 2, block / 2 * 2, 15, depth);
         RopBench bench(pass, {.rop = {.bytes_per_clk = port}});

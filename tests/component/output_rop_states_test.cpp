@@ -14,9 +14,7 @@ constexpr sim::Cycle hit = 2, miss = 103;
 
 /// One state per draw, of a pass that writes RGBA8 and D24S8.
 struct StatePass : tests::QuadPass {
-    pipeline::Frame frame;
     explicit StatePass(std::vector<RasterState> states) {
-        frame.opacity = 1.0F;
         pipeline::Pass pass;
         for (std::uint32_t draw = 0; draw < states.size(); ++draw) {
             pass.draws.push_back(draw);
@@ -24,7 +22,6 @@ struct StatePass : tests::QuadPass {
         }
         pass.states = std::move(states);
         context.states = pipeline::DrawStates(pass, pass.draws.size());
-        context.frame = &frame;
         write_colours();
         context.depth_format = pipeline::SurfaceFormat::d24s8;
     }

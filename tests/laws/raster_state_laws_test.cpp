@@ -42,7 +42,6 @@ struct StateFrame {
         frame.view = scene.view;
         frame.colour_format = colour;
         frame.depth_format = depth;
-        frame.opacity = seed % 2 == 0 ? 1.0F : 0.5F;
         if (kbuffer) frame.program = models::make_program("nearest-k", "z", 4);
         std::vector<RasterState> states;
         for (int i = 0; i < 5; ++i) states.push_back(tests::random_state(random));

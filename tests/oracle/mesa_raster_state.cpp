@@ -67,7 +67,6 @@ struct Frames {
         frame.depth_format = pipeline::SurfaceFormat::d24s8;
         frame.colour_format = pipeline::SurfaceFormat::rgba8;
         frame.background = background;
-        frame.opacity = 1.0F;
         pipeline::Pass pass;
         pass.draws = own.all_draws();
         pass.targets = {colour_surface};

@@ -87,7 +87,7 @@ void use(pipeline::Frame& frame, const models::ProgramChoice& choice) {
     frame.program = choice.program;
     for (pipeline::SurfaceInfo& surface : frame.surfaces)
         if (surface.program != nullptr) surface.program = choice.program;
-    const models::MakePicture picture = choice.picture ? choice.picture : models::layers_picture(frame.opacity);
+    const models::MakePicture picture = choice.picture ? choice.picture : models::layers_picture(0.5F);
     for (pipeline::Pass& pass : frame.passes)
         if (pass.kind == pipeline::PassKind::compose)
             pass.shader = picture({frame.program, frame.view, glm::vec3(frame.background), pass.reads.size() == 2});

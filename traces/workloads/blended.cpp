@@ -33,10 +33,11 @@ struct BlendedParams {
 
     static constexpr auto fields() {
         using P = BlendedParams;
-        return std::tuple(sim::field<&P::mode>("how a fragment's colour is combined with the stored one"),
-                          sim::field<&P::opacity>("scales the alpha of every fragment").range(0.0F, 1.0F),
-                          sim::field<&P::background>("linear RGB behind everything").range(0.0F, 1.0F),
-                          sim::field<&P::colour_format>("format of the colour surface"));
+        return std::tuple(
+            sim::field<&P::mode>("how a fragment's colour is combined with the stored one"),
+            sim::field<&P::opacity>("scales the alpha of every fragment, where it is blended").range(0.0F, 1.0F),
+            sim::field<&P::background>("linear RGB behind everything").range(0.0F, 1.0F),
+            sim::field<&P::colour_format>("format of the colour surface"));
     }
 };
 static_assert(sim::fully_described<BlendedParams>);
@@ -57,17 +58,39 @@ pipeline::BlendState state_of(BlendMode mode) {
     return {};
 }
 
+/// The colour of the material with its alpha scaled. The move that ends the material's shading multiplies instead, so
+/// there is no instruction of its own.
+class ScaledAlpha final : public pipeline::Shader {
+  public:
+    explicit ScaledAlpha(float opacity) : opacity_(opacity) {}
+
+    pipeline::ShaderShape shape() const override { return {.registers = 1, .colour = pipeline::FragmentColour::lit}; }
+    void shade(const pipeline::ShaderInput& input, pipeline::SurfaceAccess&,
+               pipeline::ShaderOutput& output) const override {
+        output.colours[0] = input.colour;
+        for (glm::vec4& colour : output.colours[0]) colour.a *= opacity_;
+    }
+
+  private:
+    float opacity_;
+};
+
 pipeline::Frame build(const Scene& scene, const pipeline::View& view, const BlendedParams& params) {
     pipeline::Frame frame = frame_of(scene, view);
-    frame.opacity = params.opacity;
     frame.background = {params.background[0], params.background[1], params.background[2], 1.0F};
     frame.colour_format = format_of(params.colour_format);
-    std::vector<std::uint32_t> all(frame.draws.size());
-    std::iota(all.begin(), all.end(), 0U);
+    ShadedPass pass;
+    pass.name = "blended";
+    pass.targets = {colour_surface};
+    pass.both_faces = true;
+    pass.shader = std::make_shared<const ScaledAlpha>(params.mode == BlendMode::replace ? 1.0F : params.opacity);
+    pass.states[0].blend[0] = state_of(params.mode);
+    pass.draws.resize(frame.draws.size());
+    std::iota(pass.draws.begin(), pass.draws.end(), 0U);
 
     PassGraph graph(std::move(frame));
     graph.add_clear("clear", {colour_surface});
-    graph.add_draw("blended", {colour_surface}, {colour_surface}, std::move(all), true, state_of(params.mode));
+    graph.add_shaded(std::move(pass));
     graph.output(colour_surface);
     return graph.lower();
 }

@@ -66,7 +66,6 @@ pipeline::Frame isosurface_frame(pipeline::Frame frame, const Scene& scene, cons
 pipeline::Frame layers_frame(pipeline::Frame frame, const ParticlesParams& params) {
     draw_sprites(frame, points_of(frame), params.size, SpriteColour::picture);
     frame.program = models::make_nearest_k(models::EntryKind::rgbz, params.k);
-    frame.opacity = params.opacity;
     return kbuffer_frame(frame, models::layers_picture(params.opacity));
 }
 

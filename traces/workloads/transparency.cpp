@@ -99,7 +99,6 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const Tran
     pipeline::Frame frame = frame_of(scene, view);
     const models::ProgramChoice choice = program_of(params);
     frame.program = choice.program;
-    frame.opacity = params.opacity;
     frame.background = {params.background[0], params.background[1], params.background[2], 1.0F};
     frame.depth_format = format_of(params.depth_format);
     Split draws = split(frame, params.transparent);
@@ -130,14 +129,14 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const Tran
     return graph.lower();
 }
 
-TruthMethod truth(const Scene&, const pipeline::Frame& frame, const TransparencyParams&) {
+TruthMethod truth(const Scene&, const pipeline::Frame& frame, const TransparencyParams& params) {
     if (frame.program != nullptr && std::find(compositing_programs.begin(), compositing_programs.end(),
                                               frame.program->id()) == compositing_programs.end())
         throw sim::InputError(fmt::format("truth: workload transparency: program: expected one of {}, got {}",
                                           fmt::join(compositing_programs, ", "), frame.program->id()));
     if (frame.program != nullptr && !frame.needs.colours)
         throw sim::InputError("truth: workload transparency: entry: expected rgbz, the one that has colours");
-    return layered_truth();
+    return layered_truth(params.opacity);
 }
 
 } // namespace

@@ -57,7 +57,7 @@ void Machine::build() {
     units_ = std::make_unique<Units>(gpu_, *frame_, options_);
     Units& units = *units_;
     units.simulation.set_observer(options_.observer);
-    units.surfaces = SurfaceStore(frame_->surfaces, first_surface_address);
+    units.surfaces = SurfaceStore(frame_->surfaces, first_surface_address, gpu_.rop.fp16_overflow);
     units.cleared.resize(frame_->surfaces.size());
     diverged_.resize(frame_->surfaces.size());
     PassContext& pass = units.pass;
@@ -316,6 +316,8 @@ void Machine::run_and_judge(std::size_t number, const FragmentStream& stream, co
 }
 
 RunResult Machine::run(const ReferenceImage& reference) {
+    CHECK_MSG(reference.fp16_overflow == gpu_.rop.fp16_overflow,
+              "the reference stores 16-bit floats otherwise than this GPU");
     RunResult result;
     std::size_t next = 0;
     for (std::size_t number = 0; number < frame_->passes.size(); ++number) {

@@ -43,7 +43,7 @@ class Machine {
             const KBufferDesign& design, const MachineOptions& options = {});
     ~Machine();
 
-    /// Runs the frame once. `reference` is run_reference() of the same frame and streams.
+    /// Runs the frame once. `reference` is run_reference() of the same frame and streams, with rop.fp16_overflow.
     RunResult run(const ReferenceImage& reference);
 
     /// Every store of the run with the time of the read it was computed from, group by group in the order of the

@@ -93,7 +93,8 @@ class PassRunner {
             pack_depth_stencil(depth_format_, depth_, surfaces_.written(pass_.depth, place_));
         for (std::size_t i = 0; coloured_ && i < colours_.size(); ++i)
             if (pass_.targets[i] != no_surface)
-                pack_colour(formats_[i], colours_[i], surfaces_.written(pass_.targets[i], place_));
+                pack_colour(formats_[i], colours_[i], surfaces_.written(pass_.targets[i], place_),
+                            surfaces_.fp16_overflow());
     }
 
     void run_fragment(QuadId quad) {
@@ -117,8 +118,9 @@ class PassRunner {
 
     void store_colour(const RasterState& state, QuadId quad, std::size_t target) {
         if (state.write_mask[target] == 0) return;
-        colours_[target] = write_colour(formats_[target], state.blend[target], state.write_mask[target],
-                                        stream_.output(target, quad, lane_), colours_[target]);
+        colours_[target] =
+            write_colour(formats_[target], state.blend[target], state.write_mask[target],
+                         stream_.output(target, quad, lane_), colours_[target], surfaces_.fp16_overflow());
         coloured_ = true;
     }
 
@@ -216,8 +218,14 @@ void draw_pass(const Frame& frame, const Pass& pass, const FragmentStream& unsha
 
 class Reference {
   public:
-    Reference(const Frame& frame, std::span<const FragmentStream> streams, QuadId delay, unsigned threads)
-        : frame_(frame), streams_(streams), delay_(delay), threads_(threads), surfaces_(frame.surfaces) {
+    Reference(const Frame& frame, std::span<const FragmentStream> streams, QuadId delay, unsigned threads,
+              Fp16Overflow fp16_overflow)
+        : frame_(frame),
+          streams_(streams),
+          delay_(delay),
+          threads_(threads),
+          surfaces_(frame.surfaces, 0, fp16_overflow) {
+        image_.fp16_overflow = fp16_overflow;
         image_.depth_complexity.resize(frame_.view_of_kbuffer().places());
         for (const Pass& pass : frame.passes) {
             run(pass);
@@ -307,9 +315,9 @@ void run_reference_pass(const Frame& frame, const Pass& pass, const FragmentStre
 }
 
 ReferenceImage run_reference(const Frame& frame, std::span<const FragmentStream> streams, QuadId delay,
-                             unsigned threads) {
+                             unsigned threads, Fp16Overflow fp16_overflow) {
     CHECK(delay >= 1);
-    return Reference(frame, streams, delay, threads).take();
+    return Reference(frame, streams, delay, threads, fp16_overflow).take();
 }
 
 } // namespace pipeline

@@ -16,6 +16,8 @@ namespace pipeline {
 /// Surfaces after a frame; row 0 first, planes of samples one below the other (sample_planes.hpp). A surface that no
 /// pass writes is empty.
 struct ReferenceImage {
+    Fp16Overflow fp16_overflow = Fp16Overflow::saturate; ///< of the GPUs whose runs it can be compared with
+
     std::vector<float> kbuffer;        ///< program->floats_per_pixel() floats per place of its view
     std::vector<float> depth;          ///< window depth per place, as the depth format holds it
     std::vector<std::uint8_t> stencil; ///< per place, where the depth format has any
@@ -41,8 +43,10 @@ struct ReferenceImage {
 /// With `delay` = H > 1, quad i reads a pixel's k-buffer as the quads up to i - H left it, and stores its result in
 /// raster order: a later store overwrites what an earlier one it did not see had changed (checks K1 and K4). H = 1 is
 /// SEQ. Depth and colour are always in order. The result is the same for any number of threads (0 = all cores).
+///
+/// Of a GPU it is given what a picture depends on: how colours are stored in 16-bit floats.
 ReferenceImage run_reference(const Frame& frame, std::span<const FragmentStream> streams, QuadId delay = 1,
-                             unsigned threads = 0);
+                             unsigned threads = 0, Fp16Overflow fp16_overflow = Fp16Overflow::saturate);
 
 /// The surfaces that a pass writes or clears: targets, depth, k-buffer.
 std::vector<SurfaceId> written_surfaces(const Pass& pass);

@@ -33,8 +33,9 @@ std::uint64_t SurfaceInfo::nominal_bytes() const {
     return texels * texel_bytes();
 }
 
-SurfaceStore::SurfaceStore(std::span<const SurfaceInfo> surfaces, std::uint64_t first_address)
-    : end_address_(first_address) {
+SurfaceStore::SurfaceStore(std::span<const SurfaceInfo> surfaces, std::uint64_t first_address,
+                           Fp16Overflow fp16_overflow)
+    : end_address_(first_address), fp16_overflow_(fp16_overflow) {
     for (const SurfaceInfo& info : surfaces) {
         CHECK(info.width >= 1 && info.height >= 1 && info.planes >= 1 && info.levels >= 1);
         Surface& surface = surfaces_.emplace_back();

@@ -75,8 +75,11 @@ class SurfaceStore {
 
     SurfaceStore() = default;
     /// All surfaces hold their cleared value. Addresses begin at `first_address`, each level at a multiple of 256.
-    explicit SurfaceStore(std::span<const SurfaceInfo> surfaces, std::uint64_t first_address = 0);
+    explicit SurfaceStore(std::span<const SurfaceInfo> surfaces, std::uint64_t first_address = 0,
+                          Fp16Overflow fp16_overflow = Fp16Overflow::saturate);
 
+    /// How the GPU that they belong to stores 16-bit floats.
+    Fp16Overflow fp16_overflow() const { return fp16_overflow_; }
     std::size_t count() const { return surfaces_.size(); }
     const SurfaceInfo& info(SurfaceId surface) const { return surfaces_[surface].info; }
 
@@ -163,6 +166,7 @@ class SurfaceStore {
 
     std::vector<Surface> surfaces_;
     std::uint64_t end_address_ = 0;
+    Fp16Overflow fp16_overflow_ = Fp16Overflow::saturate;
 };
 
 } // namespace pipeline

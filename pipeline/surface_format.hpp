@@ -71,8 +71,18 @@ constexpr double depth_step(SurfaceFormat format) {
 
 inline constexpr std::uint32_t largest_texel = 16; ///< bytes
 
+/// What a 16-bit float channel becomes of a number whose nearest multiple of its step lies beyond 65504.
+enum class Fp16Overflow : std::uint8_t {
+    saturate, ///< 65504 with its sign; NaN becomes 0
+    infinity  ///< as IEEE 754 rounds it; NaN stays
+};
+
 } // namespace pipeline
 
+template <>
+struct sim::EnumNames<pipeline::Fp16Overflow> {
+    static constexpr std::array<std::string_view, 2> names{"saturate", "infinity"};
+};
 template <>
 struct sim::EnumNames<pipeline::SurfaceFormat> {
     static constexpr auto names = [] {

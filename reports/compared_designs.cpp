@@ -39,6 +39,11 @@ ComparedDesign read_design(const DesignVariant& variant, sim::Config config, con
     models::check_design_sections(config);
     config.expect_all_used();
     row.gpu_changes = changed_parameters(row.gpu, shared);
+    if (row.gpu.rop.fp16_overflow != shared.rop.fp16_overflow)
+        throw sim::InputError(
+            fmt::format("design '{}': 'rop.fp16_overflow' decides what the picture is, and all designs "
+                        "of a comparison share one: set it for all of them",
+                        variant.text));
     return row;
 }
 
@@ -148,7 +153,7 @@ void submit(const ComparisonInput& input, std::vector<ComparedDesign>& designs, 
         own->plan = plan;
         own->frame = traces::submitted(*input.frame, plan);
         own->streams = shade(own->frame, input.threads, supervision);
-        own->reference = pipeline::run_reference(own->frame, own->streams, 1, input.threads);
+        own->reference = pipeline::run_reference(own->frame, own->streams, 1, input.threads, row.gpu.rop.fp16_overflow);
         row.submitted = std::move(own);
     }
 }

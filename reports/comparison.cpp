@@ -8,6 +8,7 @@
 #include "reports/memory_limit.hpp"
 #include "reports/numbers.hpp"
 #include "reports/stopwatch.hpp"
+#include "sim/counted.hpp"
 #include "sim/described_json.hpp"
 #include "traces/camera.hpp"
 
@@ -94,6 +95,17 @@ std::uint64_t all_quads(const ComparisonInput& input) {
     for (const ComparedDesign& row : input.designs)
         sum += pipeline::Machine::total_quads(*input.frame, input.streams, *row.design);
     return sum;
+}
+
+// Of runs that all store the same colours.
+std::vector<std::string> overflow_notes(const std::vector<pipeline::RunResult>& runs, pipeline::Fp16Overflow overflow) {
+    std::uint64_t channels = 0;
+    for (const pipeline::RunResult& run : runs)
+        channels = std::max(channels, run.stages->at("rop")["counters"]["fp16_overflows"].get<std::uint64_t>());
+    if (channels == 0) return {};
+    return {fmt::format("{} left the range of 16-bit floats and {} (rop.fp16_overflow)",
+                        sim::counted(channels, "stored colour channel"),
+                        overflow == pipeline::Fp16Overflow::saturate ? "were saturated" : "became infinite")};
 }
 
 // By design the number of the one that is run for it. Where no pass has a k-buffer, a design changes nothing but the
@@ -195,7 +207,8 @@ ComparisonInput prepare(const ComparisonRequest& request, const Supervision& sup
     const Stopwatch front_end;
     input.streams = shade(*input.frame, input.threads, supervision);
     enter(supervision, Progress::Phase::reference);
-    input.reference = pipeline::run_reference(*input.frame, input.streams, 1, input.threads);
+    input.reference = pipeline::run_reference(*input.frame, input.streams, 1, input.threads,
+                                              input.designs.front().gpu.rop.fp16_overflow); // that of all designs
     submit(input, input.designs, supervision);
     input.front_end_seconds = front_end.seconds();
     input.seconds = watch.seconds();
@@ -235,6 +248,8 @@ Comparison compare(ComparisonInput input, const Supervision& supervision) {
     keep_first_sample(comparison.reference, *input.frame);
     comparison.depth_complexity = most_of_samples(input.frame->view_of_kbuffer(), input.reference.depth_complexity);
     comparison.scene = std::move(input.scene);
+    for (std::string& note : overflow_notes(comparison.runs, input.designs.front().gpu.rop.fp16_overflow))
+        comparison.scene.notes.push_back(std::move(note));
     comparison.gpu = std::move(input.gpu);
     comparison.equal_area = std::move(input.equal_area);
     comparison.frame = std::move(input.frame);

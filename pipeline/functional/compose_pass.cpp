@@ -19,7 +19,7 @@ void store_quad(const Pass& pass, const ShaderInput& input, const ShaderOutput& 
         for (std::uint32_t i = 0; i < 4; ++i)
             if ((input.pixels >> i & 1U) != 0)
                 pack_colour(surfaces.info(surface).format, output.colours[target][i],
-                            surfaces.written(surface, {input.x + i % 2, input.y + i / 2, 0}));
+                            surfaces.written(surface, {input.x + i % 2, input.y + i / 2, 0}), surfaces.fp16_overflow());
     }
 }
 

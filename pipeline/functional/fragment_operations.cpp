@@ -3,6 +3,7 @@
 #include "pipeline/functional/number_formats.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace pipeline {
 
@@ -119,6 +120,17 @@ bool is_fixed_point(SurfaceFormat format) {
     return info_of(format).kind == ChannelKind::unorm || info_of(format).kind == ChannelKind::srgb;
 }
 
+bool has_halves(SurfaceFormat format) {
+    return format == SurfaceFormat::r16f || format == SurfaceFormat::rg16f || format == SurfaceFormat::rgba16f;
+}
+
+std::uint64_t channels_beyond_half(SurfaceFormat format, std::uint8_t write_mask, const glm::vec4& colour) {
+    std::uint64_t channels = 0;
+    for (int i = 0; has_halves(format) && i < info_of(format).channels; ++i)
+        channels += (write_mask >> i & 1) != 0 && std::fabs(colour[i]) >= infinite_half ? 1 : 0;
+    return channels;
+}
+
 // NaN becomes 0, as in every fixed-point format.
 glm::vec4 clamped(const glm::vec4& colour) {
     glm::vec4 result(0.0F);
@@ -127,6 +139,7 @@ glm::vec4 clamped(const glm::vec4& colour) {
     return result;
 }
 
+// Of formats in fixed point.
 glm::vec4 blended_through(SurfaceFormat format, const BlendState& blend, const glm::vec4& source,
                           const glm::vec4& stored) {
     if (is_8_bit_unorm(format)) {
@@ -135,7 +148,6 @@ glm::vec4 blended_through(SurfaceFormat format, const BlendState& blend, const g
         for (int i = 0; i < info_of(format).channels; ++i) colour[i] = unorm8_to_float(codes[i]);
         return colour;
     }
-    if (!is_fixed_point(format)) return through_format(format, blended(blend, source, stored));
     BlendState in_range = blend;
     in_range.constant = clamped(blend.constant);
     return through_format(format, blended(in_range, clamped(source), stored));
@@ -161,8 +173,15 @@ Codes blended(const BlendState& blend, const Codes& source, const Codes& target)
 }
 
 glm::vec4 write_colour(SurfaceFormat format, const BlendState& blend, std::uint8_t write_mask, const glm::vec4& source,
-                       const glm::vec4& stored) {
-    glm::vec4 result = blend.enabled ? blended_through(format, blend, source, stored) : through_format(format, source);
+                       const glm::vec4& stored, Fp16Overflow overflow, std::uint64_t* overflowed) {
+    glm::vec4 result;
+    if (is_fixed_point(format)) {
+        result = blend.enabled ? blended_through(format, blend, source, stored) : through_format(format, source);
+    } else {
+        result = blended(blend, source, stored);
+        if (overflowed != nullptr) *overflowed += channels_beyond_half(format, write_mask, result);
+        result = through_format(format, result, overflow);
+    }
     for (int i = 0; i < 4; ++i)
         if ((write_mask >> i & 1) == 0) result[i] = stored[i];
     return result;

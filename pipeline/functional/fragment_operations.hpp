@@ -26,9 +26,12 @@ glm::tvec4<std::uint8_t> blended(const BlendState& blend, const glm::tvec4<std::
 ///
 /// r8, rg8 and rgba8 are blended in 8-bit codes: source and constant are converted first, as the fixed-function units
 /// do. srgb8a8 is blended in linear light and rgb10a2, whose channels have codes of different widths, in floats, after
-/// source and constant were clamped to [0,1]; both are rounded once.
+/// source and constant were clamped to [0,1]; both are rounded once. So are float formats.
+///
+/// Adds to `overflowed`, unless null, the written channels of 16-bit floats that IEEE 754 makes infinite.
 glm::vec4 write_colour(SurfaceFormat format, const BlendState& blend, std::uint8_t write_mask, const glm::vec4& source,
-                       const glm::vec4& stored);
+                       const glm::vec4& stored, Fp16Overflow overflow = Fp16Overflow::saturate,
+                       std::uint64_t* overflowed = nullptr);
 
 /// Whether the blended colour depends on the stored one.
 bool reads_target(const BlendState& blend);

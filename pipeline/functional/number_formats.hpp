@@ -17,7 +17,10 @@ constexpr double round_even(double value) {
 /// binary16 -> binary32, exact. Infinities and NaNs stay what they are.
 float half_to_float(std::uint16_t half);
 
-/// binary32 -> binary16, to nearest even; 65520 and more become infinity.
+/// Halfway between 65504, the largest finite binary16, and what would be the next: from here on numbers are infinite.
+inline constexpr float infinite_half = 65520.0F;
+
+/// binary32 -> binary16, to nearest even; from infinite_half on infinity.
 std::uint16_t float_to_half(float value);
 
 /// [0,1] -> 0..255 to nearest even. Below 0 and NaN give 0, above 1 gives 255.

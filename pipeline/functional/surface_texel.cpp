@@ -55,9 +55,14 @@ float small_float_value(std::uint32_t code, unsigned fraction_bits) {
     return std::bit_cast<float>((exponent + 112U) << 23U | fraction << (23U - fraction_bits));
 }
 
-void pack_halves(const glm::vec4& colour, int channels, std::byte* target) {
-    for (int i = 0; i < channels; ++i)
-        store(target + std::ptrdiff_t{2} * i, float_to_half(saturated(colour[i], 65504.0F)));
+// The sign of a NaN depends on the order of operands, which is a compiler's choice.
+std::uint16_t half_code(float value, Fp16Overflow overflow) {
+    if (overflow == Fp16Overflow::saturate) return float_to_half(saturated(value, 65504.0F));
+    return std::isnan(value) ? std::uint16_t{0x7E00} : float_to_half(value);
+}
+
+void pack_halves(const glm::vec4& colour, int channels, std::byte* target, Fp16Overflow overflow) {
+    for (int i = 0; i < channels; ++i) store(target + std::ptrdiff_t{2} * i, half_code(colour[i], overflow));
 }
 
 void pack_floats(const glm::vec4& colour, int channels, std::byte* target) {
@@ -69,7 +74,7 @@ constexpr double steps_of(SurfaceFormat format) { return format == SurfaceFormat
 
 } // namespace
 
-void pack_colour(SurfaceFormat format, const glm::vec4& colour, std::byte* target) {
+void pack_colour(SurfaceFormat format, const glm::vec4& colour, std::byte* target, Fp16Overflow overflow) {
     const int channels = info_of(format).channels;
     switch (format) {
     case SurfaceFormat::r8:
@@ -92,7 +97,7 @@ void pack_colour(SurfaceFormat format, const glm::vec4& colour, std::byte* targe
     case SurfaceFormat::r16f:
     case SurfaceFormat::rg16f:
     case SurfaceFormat::rgba16f:
-        pack_halves(colour, channels, target);
+        pack_halves(colour, channels, target, overflow);
         break;
     case SurfaceFormat::r32f:
     case SurfaceFormat::rg32f:
@@ -158,9 +163,9 @@ glm::vec4 unpack_texel(SurfaceFormat format, const std::byte* source) {
     return colour;
 }
 
-glm::vec4 through_format(SurfaceFormat format, const glm::vec4& colour) {
+glm::vec4 through_format(SurfaceFormat format, const glm::vec4& colour, Fp16Overflow overflow) {
     std::array<std::byte, largest_texel> bytes{};
-    pack_colour(format, colour, bytes.data());
+    pack_colour(format, colour, bytes.data(), overflow);
     return unpack_texel(format, bytes.data());
 }
 

@@ -1,7 +1,8 @@
 // Texels: what each surface format stores of a colour, a depth or a stencil value, bit for bit.
 //
 // Source: OpenGL 4.5 core, sections 2.3.4 (small floats), 2.3.5 (normalised integers) and 8.23 (sRGB). Float formats
-// saturate at their largest finite value and store 0 for NaN, so that nothing infinite is ever read back.
+// saturate at their largest finite value and store 0 for NaN, so that nothing infinite is ever read back; but those of
+// 16-bit floats become infinite where a GPU is asked to store what IEEE 754 says.
 #pragma once
 
 #include "pipeline/surface_format.hpp"
@@ -17,14 +18,15 @@ namespace pipeline {
 using DepthCode = std::uint32_t;
 
 /// Writes bytes_of(format) bytes. Of linear colour; not for formats of integers.
-void pack_colour(SurfaceFormat format, const glm::vec4& colour, std::byte* target);
+void pack_colour(SurfaceFormat format, const glm::vec4& colour, std::byte* target,
+                 Fp16Overflow overflow = Fp16Overflow::saturate);
 
 /// What a texture read of the texel gives: linear colour, or the depth, or integers as numbers. Missing channels read
 /// 0, 0, 0, 1.
 glm::vec4 unpack_texel(SurfaceFormat format, const std::byte* source);
 
 /// The colour that is read back after storing `colour`.
-glm::vec4 through_format(SurfaceFormat format, const glm::vec4& colour);
+glm::vec4 through_format(SurfaceFormat format, const glm::vec4& colour, Fp16Overflow overflow = Fp16Overflow::saturate);
 
 /// Of r32u and rg32u.
 void pack_integers(SurfaceFormat format, const glm::uvec2& values, std::byte* target);

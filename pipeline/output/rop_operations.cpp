@@ -71,7 +71,9 @@ void Rop::store_colours(const RasterState& state, QuadId quad, std::uint32_t pix
         const glm::vec4 source = pass_->stream->output(target, quad, pixel);
         std::byte* texel = fixed.surfaces->written(fixed.targets[target], place);
         const glm::vec4 stored = unpack_texel(format, texel);
-        pack_colour(format, write_colour(format, state.blend[target], state.write_mask[target], source, stored), texel);
+        const glm::vec4 colour = write_colour(format, state.blend[target], state.write_mask[target], source, stored,
+                                              params_.fp16_overflow, &stats_.fp16_overflows.value);
+        pack_colour(format, colour, texel, params_.fp16_overflow);
     }
 }
 

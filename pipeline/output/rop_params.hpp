@@ -2,6 +2,7 @@
 #pragma once
 
 #include "pipeline/output/tile_cache.hpp"
+#include "pipeline/surface_format.hpp"
 #include "sim/described.hpp"
 #include "sim/stats.hpp"
 
@@ -21,6 +22,7 @@ struct RopParams {
     std::uint32_t read_return_latency = 140;
     bool fast_clear = false;
     std::uint32_t clear_sectors = 1048576;
+    Fp16Overflow fp16_overflow = Fp16Overflow::saturate;
 
     /// Groups of four; throws sim::InputError when the ROPs do not come in groups.
     std::uint32_t groups() const;
@@ -58,7 +60,10 @@ struct RopParams {
             sim::field<&P::clear_sectors>(
                 "Sectors of a surface that the table of its fast clears covers; larger ones are cleared by writing")
                 .unit("sectors")
-                .range(0, 1U << 30U)};
+                .range(0, 1U << 30U),
+            sim::field<&P::fp16_overflow>(
+                "What 16-bit float surfaces store of a colour beyond their range: the largest "
+                "finite number, or infinity, as IEEE 754 has it")};
     }
 };
 static_assert(sim::fully_described<RopParams>);
@@ -66,7 +71,7 @@ static_assert(sim::fully_described<RopParams>);
 struct RopStats {
     sim::Counter quads, fragments, depth_passed, depth_failed, stencil_failed, stores, program_runs, program_cycles,
         insertions, interlock_stalls, kbuffer_reads, kbuffer_reads_from_tiles, atomics, counter_atomics, kept, not_kept,
-        passed_over, hazards_detected, hazards_overlooked, clears, copies, resolves;
+        passed_over, hazards_detected, hazards_overlooked, fp16_overflows, clears, copies, resolves;
     sim::HighWater queue_max;
     TileCacheStats depth_tiles, colour_tiles, kbuffer_tiles;
 
@@ -95,6 +100,9 @@ struct RopStats {
                 .unit("fragments"),
             sim::field<&S::hazards_overlooked>("Of the hazards, those that the version numbers do not show")
                 .unit("fragments"),
+            sim::field<&S::fp16_overflows>("Channels of colours that were stored as 16-bit floats and lay beyond their "
+                                           "range; IEEE 754 makes them infinite")
+                .unit("channels"),
             sim::field<&S::clears>("Bytes written by clears").unit("bytes"),
             sim::field<&S::copies>("Bytes read and written by copies").unit("bytes"),
             sim::field<&S::resolves>("Bytes written of sectors that were cleared fast, for readers on the memory side")

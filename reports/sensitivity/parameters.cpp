@@ -82,6 +82,7 @@ const std::vector<Reader>& readers() {
         {"rop.kbuffer_cache_bytes",
          {"k-buffer surface and its tile cache", "lists of fragments"},
          "no k-buffer tile cache is built"},
+        {"rop.fp16_overflow", {}, "it changes the picture, and no time"},
         {"rop.reads_per_clk", {"k-buffer read path of the shaders"}, "no shader reads the k-buffer"},
         {"rop.read_", {"k-buffer read path of the shaders"}, "no shader reads the k-buffer"},
     };

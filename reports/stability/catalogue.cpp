@@ -10,10 +10,10 @@ namespace reports::stability {
 
 namespace {
 
-constexpr std::vector<Case> (*groups[])() = {
-    depth_format_cases, peeling_cases,       kbuffer_cases, rasterization_cases, blending_cases,
-    shadow_cases,       shadow_search_cases, field_cases,   distance_cases,      geometry_cases,
-    door_cases,         frame_cases,         hardware_cases};
+constexpr std::vector<Case> (*groups[])() = {depth_format_cases, peeling_cases,  kbuffer_cases,  rasterization_cases,
+                                             blending_cases,     half_cases,     shadow_cases,   shadow_search_cases,
+                                             field_cases,        distance_cases, geometry_cases, door_cases,
+                                             frame_cases,        hardware_cases};
 
 std::vector<Case> all_cases() {
     std::vector<Case> all;

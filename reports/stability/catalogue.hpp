@@ -27,6 +27,7 @@ std::vector<Case> peeling_cases();
 std::vector<Case> kbuffer_cases();
 std::vector<Case> rasterization_cases();
 std::vector<Case> blending_cases();
+std::vector<Case> half_cases();
 std::vector<Case> shadow_cases();
 std::vector<Case> shadow_search_cases();
 std::vector<Case> field_cases();

@@ -29,11 +29,16 @@ pipeline::RunResult Replay::run(const std::string& design, const std::vector<std
     models::check_design_sections(config);
     const auto model = models::make_design(design, config);
     config.expect_all_used();
-    if (!model->submission().changes()) return pipeline::Machine(gpu, frame, streams, *model, machine).run(reference);
-    const pipeline::Frame other = traces::submitted(frame, model->submission());
-    const auto other_streams = pipeline::rasterize_frame(other);
-    return pipeline::Machine(gpu, other, other_streams, *model, machine)
-        .run(pipeline::run_reference(other, other_streams));
+    const auto judged_by_own = [&](const pipeline::Frame& drawn, const std::vector<pipeline::FragmentStream>& of) {
+        return pipeline::Machine(gpu, drawn, of, *model, machine)
+            .run(pipeline::run_reference(drawn, of, 1, options.threads, gpu.rop.fp16_overflow));
+    };
+    if (model->submission().changes()) {
+        const pipeline::Frame other = traces::submitted(frame, model->submission());
+        return judged_by_own(other, pipeline::rasterize_frame(other));
+    }
+    if (gpu.rop.fp16_overflow != reference.fp16_overflow) return judged_by_own(frame, streams);
+    return pipeline::Machine(gpu, frame, streams, *model, machine).run(reference);
 }
 
 } // namespace reports::stability

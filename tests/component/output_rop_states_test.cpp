@@ -1,6 +1,8 @@
 // A ROP group whose draws have raster states of their own: what masks, blending and stencil read, write and cost.
 #include "tests/support/rop_kit.hpp"
 
+#include <limits>
+
 namespace output_rop_states_test {
 
 using Cycles = std::vector<sim::Cycle>;
@@ -128,6 +130,30 @@ TEST(RopStates, DepthBesideAStencilIsAPartOfItsTexel) {
         EXPECT_EQ(bench.requested_lines(MemoryClient::tile_read).size(), stencil ? 1U : 0U);
         EXPECT_EQ(bench.depth().depth, pipeline::depth_code(pass.context.depth_format, 0.5F));
     }
+}
+
+// 65504 is the largest finite half; from 65520 on IEEE 754 rounds to infinity.
+TEST(RopStates, HalvesOverflowAsTheGpuSays) {
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    constexpr float below = 16.0F - 0x1p-8F; // the sum is the last float below 65520
+    struct Expected {
+        float added, saturated, infinite;
+        std::uint64_t channels; ///< of one pixel
+    };
+    for (const auto& [added, saturated, infinite, channels] :
+         {Expected{0.0F, 65504.0F, 65504.0F, 0}, Expected{below, 65504.0F, 65504.0F, 0},
+          Expected{16.0F, 65504.0F, infinity, 4}, Expected{65504.0F, 65504.0F, infinity, 4}})
+        for (const auto overflow : {pipeline::Fp16Overflow::saturate, pipeline::Fp16Overflow::infinity}) {
+            SCOPED_TRACE(added);
+            StatePass pass({RasterState{}, blending()});
+            pass.write_colours(pipeline::SurfaceFormat::rgba16f);
+            pass.quad_of(0, glm::vec4(65504.0F));
+            pass.quad_of(1, glm::vec4(added));
+            Bench bench(pass, {.rop = {.fp16_overflow = overflow}});
+            const bool saturates = overflow == pipeline::Fp16Overflow::saturate;
+            EXPECT_EQ(bench.colour(), glm::vec4(saturates ? saturated : infinite));
+            EXPECT_EQ(bench.rop.stats().fp16_overflows, 4 * channels);
+        }
 }
 
 } // namespace output_rop_states_test

@@ -11,8 +11,11 @@
 #include "traces/pass_graph.hpp"
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 namespace {
 
@@ -21,20 +24,21 @@ using pipeline::SurfaceFormat;
 
 /// A frame of one clear and one pass whose draws take random states from a list.
 struct StateFrame {
+    using Fp16Overflow = pipeline::Fp16Overflow;
     pipeline::Frame frame;
     std::vector<pipeline::FragmentStream> streams;
     pipeline::ReferenceImage reference;
 
     /// With a k-buffer, the same draws go through it afterwards, tested against the depth that is there by then.
     StateFrame(std::uint64_t seed, SurfaceFormat colour, SurfaceFormat depth, std::uint32_t samples = 1,
-               bool kbuffer = false) {
+               bool kbuffer = false, float brightest = 1.0F, Fp16Overflow fp16_overflow = Fp16Overflow::saturate) {
         sim::Random random(seed, "states");
         tests::FunctionalScene scene(40, 28);
         scene.view.samples = samples;
         pipeline::Material blended = scene.resources.materials[0];
         blended.alpha_mode = pipeline::AlphaMode::blend;
         const std::uint32_t material = scene.add_material(blended);
-        for (int draw = 0; draw < 12; ++draw) scene.add(mesh(random), material);
+        for (int draw = 0; draw < 12; ++draw) scene.add(mesh(random, brightest), material);
         scene.resources.place();
         scene.resources.validate("states");
         frame.resources = std::make_shared<pipeline::Resources>(scene.resources);
@@ -68,15 +72,15 @@ struct StateFrame {
         }
         frame = graph.lower();
         streams = pipeline::rasterize_frame(frame);
-        reference = pipeline::run_reference(frame, streams);
+        reference = pipeline::run_reference(frame, streams, 1, 0, fp16_overflow);
     }
 
-    static tests::MeshData mesh(sim::Random& random) {
+    static tests::MeshData mesh(sim::Random& random, float brightest) {
         tests::MeshData mesh;
         for (const tests::LevelTriangle& triangle : tests::level_triangles(20, 40, 28, 9.0, 7, random))
             for (const glm::vec2& corner : triangle.corners) {
                 mesh.positions.emplace_back(corner, triangle.depth);
-                mesh.colours.push_back(triangle.colour);
+                mesh.colours.push_back(triangle.colour * brightest);
             }
         return mesh;
     }
@@ -92,13 +96,21 @@ struct StateFrame {
     }
 };
 
-void expect_reference(const StateFrame& scene, const std::string& design,
-                      const std::vector<std::string>& settings = {}) {
-    const pipeline::RunResult run = scene.run(design, settings);
+std::vector<std::uint32_t> bits_of(const std::vector<float>& values) {
+    std::vector<std::uint32_t> bits(values.size());
+    std::transform(values.begin(), values.end(), bits.begin(),
+                   [](float of) { return std::bit_cast<std::uint32_t>(of); });
+    return bits;
+}
+
+pipeline::RunResult expect_reference(const StateFrame& scene, const std::string& design,
+                                     const std::vector<std::string>& settings = {}) {
+    pipeline::RunResult run = scene.run(design, settings);
     EXPECT_EQ(run.wrong_pixels, 0U);
-    EXPECT_EQ(run.colour, scene.reference.colour);
+    EXPECT_EQ(bits_of(run.colour), bits_of(scene.reference.colour));
     EXPECT_EQ(run.depth, scene.reference.depth);
     EXPECT_EQ(run.stencil, scene.reference.stencil);
+    return run;
 }
 
 TEST(RasterStateLaws, TheMachineLeavesTheSurfacesOfTheReference) {
@@ -132,6 +144,42 @@ TEST(RasterStateLaws, InEveryFormat) {
             EXPECT_EQ(scene.reference.stencil.empty(), !has_stencil(depth));
             EXPECT_EQ(scene.reference.depth.empty(), !has_depth(depth));
         }
+}
+
+// Sums of colours as bright as a half can be leave its range; products with factors that bright are not finite at all.
+TEST(RasterStateLaws, BeyondTheRangeOfHalves) {
+    using Fp16Overflow = pipeline::Fp16Overflow;
+    const auto any = [](const std::vector<float>& colours, auto is) {
+        return std::any_of(colours.begin(), colours.end(), [&](float of) { return is(of); });
+    };
+    std::size_t overflows = 0, in_range = 0, infinities = 0, not_numbers = 0;
+    for (std::uint64_t seed = 0; seed < tests::repetitions(12); ++seed)
+        for (const SurfaceFormat colour : {SurfaceFormat::r16f, SurfaceFormat::rg16f, SurfaceFormat::rgba16f})
+            for (const float brightest : {1.0F, 65504.0F}) {
+                SCOPED_TRACE(fmt::format("{} {} {}", seed, info_of(colour).name, brightest));
+                const auto frame = [&](Fp16Overflow overflow) {
+                    return StateFrame(seed, colour, SurfaceFormat::d24s8, 1, false, brightest, overflow);
+                };
+                const StateFrame saturated = frame(Fp16Overflow::saturate), infinite = frame(Fp16Overflow::infinity);
+                const auto count = [](const pipeline::RunResult& run) {
+                    return run.stages->at("rop")["counters"]["fp16_overflows"].get<std::uint64_t>();
+                };
+                const auto run = expect_reference(saturated, "existing");
+                const auto ieee = expect_reference(infinite, "existing", {"rop.fp16_overflow=infinity"});
+                EXPECT_EQ(run.cycles, ieee.cycles);
+                EXPECT_FALSE(any(run.colour, [](float of) { return !std::isfinite(of); }));
+                // Up to the first channel that leaves the range both do the same.
+                EXPECT_EQ(count(run) == 0, count(ieee) == 0);
+                if (count(run) == 0) EXPECT_EQ(bits_of(run.colour), bits_of(ieee.colour));
+                overflows += count(run);
+                in_range += count(run) == 0 ? 1 : 0;
+                infinities += any(ieee.colour, [](float of) { return std::isinf(of); }) ? 1 : 0;
+                not_numbers += any(ieee.colour, [](float of) { return std::isnan(of); }) ? 1 : 0;
+            }
+    EXPECT_GT(overflows, 0U);
+    EXPECT_GT(in_range, 0U);
+    EXPECT_GT(infinities, 0U);
+    EXPECT_GT(not_numbers, 0U);
 }
 
 TEST(RasterStateLaws, WithSamples) {

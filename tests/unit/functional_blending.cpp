@@ -158,6 +158,35 @@ TEST(Blending, MissingAlphaOfTheTargetIsOne) {
     }
 }
 
+TEST(Blending, ChannelsBeyondTheRangeOfHalvesAreCounted) {
+    const float below = std::nextafter(65520.0F, 0.0F);
+    const auto count = [](SurfaceFormat format, const BlendState& blend, std::uint8_t mask, const glm::vec4& source,
+                          float stored, Fp16Overflow overflow) {
+        std::uint64_t channels = 0;
+        write_colour(format, blend, mask, source, glm::vec4(stored), overflow, &channels);
+        return channels;
+    };
+    for (const Fp16Overflow overflow : {Fp16Overflow::saturate, Fp16Overflow::infinity}) {
+        const auto written = [&](SurfaceFormat format, const glm::vec4& colour, std::uint8_t mask = 15) {
+            return count(format, {}, mask, colour, 0.0F, overflow);
+        };
+        const glm::vec4 colour(below, 65520.0F, -65520.0F, std::numeric_limits<float>::infinity());
+        EXPECT_EQ(written(SurfaceFormat::rgba16f, colour), 3U);
+        EXPECT_EQ(written(SurfaceFormat::rg16f, colour), 1U);
+        EXPECT_EQ(written(SurfaceFormat::r16f, colour), 0U);
+        EXPECT_EQ(written(SurfaceFormat::rgba16f, colour, 0b1011), 2U);
+        EXPECT_EQ(written(SurfaceFormat::rgba16f, glm::vec4(std::numeric_limits<float>::quiet_NaN())), 0U);
+        for (const SurfaceFormat format : {SurfaceFormat::rgba32f, SurfaceFormat::r11g11b10f, SurfaceFormat::rgba8})
+            EXPECT_EQ(written(format, colour), 0U);
+        const auto sum = [&](float more) {
+            return count(SurfaceFormat::rgba16f, blends::of(blends::sum), 15, glm::vec4(more), 65504.0F, overflow);
+        };
+        EXPECT_EQ(sum(below - 65504.0F), 0U);
+        EXPECT_EQ(sum(16.0F), 4U);
+        EXPECT_EQ(sum(65504.0F), 4U);
+    }
+}
+
 TEST(WriteMask, KeepsWhatItLeavesOut) {
     const glm::vec4 stored = through_format(SurfaceFormat::rgba8, {0.1F, 0.2F, 0.3F, 0.4F}), source(1.0F);
     for (const bool enabled : {false, true})

@@ -121,6 +121,39 @@ TEST(SurfaceTexel, SaturatesAndStoresNothingInfinite) {
     }
 }
 
+// IEEE 754-2008, section 4.3.1: from 65504 + 16 on, the middle between the largest finite half and what would be the
+// next, numbers round to infinity.
+TEST(SurfaceTexel, HalvesOverflowAsTheyAreAskedTo) {
+    const float below = std::nextafter(65520.0F, 0.0F);
+    struct Expected {
+        float value;
+        std::uint32_t saturated, infinite;
+    };
+    const std::array cases{Expected{65504.0F, 0x7BFF, 0x7BFF},  Expected{below, 0x7BFF, 0x7BFF},
+                           Expected{65520.0F, 0x7BFF, 0x7C00},  Expected{1e30F, 0x7BFF, 0x7C00},
+                           Expected{infinity, 0x7BFF, 0x7C00},  Expected{-below, 0xFBFF, 0xFBFF},
+                           Expected{-65520.0F, 0xFBFF, 0xFC00}, Expected{-infinity, 0xFBFF, 0xFC00},
+                           Expected{not_a_number, 0, 0x7E00},   Expected{-not_a_number, 0, 0x7E00}};
+    for (const SurfaceFormat format : {SurfaceFormat::r16f, SurfaceFormat::rg16f, SurfaceFormat::rgba16f})
+        for (const Expected& expected : cases) {
+            SCOPED_TRACE(expected.value);
+            for (int channel = 0; channel < info_of(format).channels; ++channel) {
+                const auto code = [&](Fp16Overflow overflow) {
+                    Bytes bytes{};
+                    pack_colour(format, only(channel, expected.value), bytes.data(), overflow);
+                    std::uint16_t half = 0;
+                    std::memcpy(&half, bytes.data() + std::ptrdiff_t{2} * channel, sizeof(half));
+                    return half;
+                };
+                EXPECT_EQ(code(Fp16Overflow::saturate), expected.saturated);
+                EXPECT_EQ(code(Fp16Overflow::infinity), expected.infinite);
+            }
+        }
+    for (const SurfaceFormat format : {SurfaceFormat::r11g11b10f, SurfaceFormat::rgba32f, SurfaceFormat::rgba8})
+        EXPECT_EQ(through_format(format, glm::vec4(infinity), Fp16Overflow::infinity),
+                  through_format(format, glm::vec4(infinity)));
+}
+
 TEST(SurfaceTexel, StoredSrgbIsEncodedAndReadBackLinear) {
     for (std::uint32_t code = 0; code < 256; ++code) {
         const std::uint32_t texel = code * 0x01010101U;

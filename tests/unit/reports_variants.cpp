@@ -116,4 +116,16 @@ TEST(ReportsVariants, AMisspeltKeyIsNamedWithItsVariantAndWhatIsNear) {
               std::string::npos);
 }
 
+// The reference is one for all designs, and has to know.
+TEST(ReportsVariants, WhatDecidesThePictureIsOfTheComparison) {
+    EXPECT_NE(error_of([] {
+                  hardware_of({"existing", "blender?rop.fp16_overflow=infinity"}, {});
+              }).find("design 'blender?rop.fp16_overflow=infinity': 'rop.fp16_overflow' decides what the picture is"),
+              std::string::npos);
+    const auto hardware =
+        hardware_of({"existing", "blender?rop.fp16_overflow=infinity"}, {"rop.fp16_overflow=infinity"});
+    for (const auto& design : hardware.designs)
+        EXPECT_EQ(design.gpu.rop.fp16_overflow, pipeline::Fp16Overflow::infinity);
+}
+
 } // namespace

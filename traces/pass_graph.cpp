@@ -237,7 +237,7 @@ class PassGraph::Binding {
   private:
     void bind(Pass& pass, const Node& node) {
         pipeline::View view = frame_.view_of(pass);
-        if (pass.kind == PassKind::compose) view.samples = 1; // one colour for each pixel
+        if (pass.kind != PassKind::draw) view.samples = 1; // one colour for each pixel
         if (pass.uses_depth()) pass.depth = id_of(node.depth, view);
         for (const std::string& target : node.targets)
             pass.targets.push_back(contains(node.writes, target) ? id_of(target, view) : pipeline::no_surface);

@@ -38,7 +38,7 @@ pipeline::Frame frame_of(const Scene& scene, const pipeline::View& view) {
 }
 
 void add_picture(PassGraph& graph, const pipeline::Frame& frame, const models::MakePicture& picture,
-                 bool over_surface) {
+                 Composite composite, bool over_surface) {
     graph.add_surface(picture_surface, pipeline::SurfaceFormat::rgba32f);
     ShadedPass pass;
     pass.name = "picture";
@@ -47,7 +47,7 @@ void add_picture(PassGraph& graph, const pipeline::Frame& frame, const models::M
     if (over_surface) pass.reads.emplace_back(colour_surface);
     pass.targets = {picture_surface};
     pass.screen = true;
-    pass.timed = false;
+    pass.timed = composite == Composite::timed;
     graph.add_shaded(std::move(pass));
     graph.output(picture_surface);
 }
@@ -66,10 +66,10 @@ PassGraph filled(const pipeline::Frame& frame, pipeline::FragmentColour colour) 
 
 } // namespace
 
-pipeline::Frame kbuffer_frame(const pipeline::Frame& frame, const models::MakePicture& picture,
+pipeline::Frame kbuffer_frame(const pipeline::Frame& frame, const models::MakePicture& picture, Composite composite,
                               pipeline::FragmentColour colour) {
     PassGraph graph = filled(frame, colour);
-    add_picture(graph, frame, picture);
+    add_picture(graph, frame, picture, composite);
     return graph.lower();
 }
 

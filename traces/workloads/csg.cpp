@@ -14,6 +14,7 @@ struct CsgParams {
     std::string expression;
     std::uint32_t k = 8;
     std::array<float, 3> background = {1.0F, 1.0F, 1.0F};
+    Composite composite = Composite::free;
 
     static constexpr auto fields() {
         using P = CsgParams;
@@ -22,7 +23,7 @@ struct CsgParams {
                                        "(from 0), ! - & ^ | that bind as in C, parentheses; nothing: A|B|C...; as in "
                                        "'A & !B'"),
             sim::field<&P::k>("fragments kept per pixel; all of a pixel must fit").unit("fragments").range(1, 64),
-            sim::field<&P::background>("linear RGB behind everything").range(0.0F, 1.0F));
+            sim::field<&P::background>("linear RGB behind everything").range(0.0F, 1.0F), composite_field<P>());
     }
 };
 static_assert(sim::fully_described<CsgParams>);
@@ -43,7 +44,7 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const CsgP
     frame.program = models::make_nearest_k(models::EntryKind::zo, params.k);
     frame.background = {params.background[0], params.background[1], params.background[2], 1.0F};
     const CsgExpression expression = read_expression(params, frame.draws.size());
-    return kbuffer_frame(frame, csg_picture(frame, expression));
+    return kbuffer_frame(frame, csg_picture(frame, expression), params.composite);
 }
 
 std::vector<std::optional<double>> distances_of(const CsgSurface& surface) {

@@ -18,6 +18,7 @@ struct IsosurfaceParams {
     bool sorted = true;
     bool silhouettes = true;
     std::array<float, 3> background = {1.0F, 1.0F, 1.0F};
+    Composite composite = Composite::free;
 
     static constexpr auto fields() {
         using P = IsosurfaceParams;
@@ -26,7 +27,7 @@ struct IsosurfaceParams {
             sim::field<&P::k>("samples sorted per pixel").unit("samples").range(1, 64),
             sim::field<&P::sorted>("triangles are drawn in the order of their centroids, the nearest first"),
             sim::field<&P::silhouettes>("dark lines where a surface ends"),
-            sim::field<&P::background>("linear RGB behind everything").range(0.0F, 1.0F));
+            sim::field<&P::background>("linear RGB behind everything").range(0.0F, 1.0F), composite_field<P>());
     }
 };
 static_assert(sim::fully_described<IsosurfaceParams>);
@@ -41,7 +42,7 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const Isos
     setup.depth = pipeline::EyeDepth(view.projection);
     frame.program = models::make_isosurface(setup);
     frame.background = {params.background[0], params.background[1], params.background[2], 1.0F};
-    return kbuffer_frame(frame, isosurface_picture(params.silhouettes));
+    return kbuffer_frame(frame, isosurface_picture(params.silhouettes), params.composite);
 }
 
 } // namespace

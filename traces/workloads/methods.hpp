@@ -55,16 +55,25 @@ Workload make_workload(std::string id, std::string summary,
 /// What frames of all workloads have in common: the scene with all its draws, seen through `view`.
 pipeline::Frame frame_of(const Scene& scene, const pipeline::View& view);
 
-/// Appends the pass that makes the frame's picture of its k-buffer, which takes no time: over the colour surface, or
-/// over the background. The picture is the output.
+/// Whether the pass that makes a picture of a k-buffer takes time. Published times leave it out.
+enum class Composite : std::uint8_t { free, timed };
+
+/// The parameter of the workloads that have such a pass; their parameters have a member of the name.
+template <class P>
+constexpr auto composite_field() {
+    return sim::field<&P::composite>("whether the pass that makes the picture of the k-buffer takes time");
+}
+
+/// Appends the pass that makes the frame's picture of its k-buffer: over the colour surface, or over the background.
+/// The picture is the output.
 void add_picture(PassGraph& graph, const pipeline::Frame& frame, const models::MakePicture& picture,
-                 bool over_surface = false);
+                 Composite composite = Composite::free, bool over_surface = false);
 
 /// The graph of the methods that do nothing but fill a k-buffer: clear, all draws with both faces through the frame's
 /// program, and the picture.
-pipeline::Frame kbuffer_frame(const pipeline::Frame& frame, const models::MakePicture& picture,
+pipeline::Frame kbuffer_frame(const pipeline::Frame& frame, const models::MakePicture& picture, Composite composite,
                               pipeline::FragmentColour colour = pipeline::FragmentColour::lit);
-/// With a picture that a kernel makes.
+/// With a picture that a kernel makes, which takes no time.
 pipeline::Frame kbuffer_frame(const pipeline::Frame& frame, std::shared_ptr<const pipeline::Kernel> picture);
 
 /// The workload with `change(options, name)` applied to what it is given: as_text(), as_list(), own_k().
@@ -80,3 +89,8 @@ void as_list(WorkloadOptions& options, const std::string& name);
 void own_k(WorkloadOptions& options, const std::string& k);
 
 } // namespace traces
+
+template <>
+struct sim::EnumNames<traces::Composite> {
+    static constexpr std::array<std::string_view, 2> names{"free", "timed"};
+};

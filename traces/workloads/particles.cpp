@@ -34,6 +34,7 @@ struct ParticlesParams {
     bool sorted = true;
     bool silhouettes = false;
     std::array<float, 3> background = {1.0F, 1.0F, 1.0F};
+    Composite composite = Composite::free;
 
     static constexpr auto fields() {
         using P = ParticlesParams;
@@ -46,7 +47,7 @@ struct ParticlesParams {
             sim::field<&P::opacity>("of each point, for layers").range(0.0F, 1.0F),
             sim::field<&P::sorted>("isosurfaces: points are drawn in the order of their distance, the nearest first"),
             sim::field<&P::silhouettes>("dark lines where an isosurface ends"),
-            sim::field<&P::background>("linear RGB behind everything").range(0.0F, 1.0F));
+            sim::field<&P::background>("linear RGB behind everything").range(0.0F, 1.0F), composite_field<P>());
     }
 };
 static_assert(sim::fully_described<ParticlesParams>);
@@ -60,13 +61,13 @@ pipeline::Frame isosurface_frame(pipeline::Frame frame, const Scene& scene, cons
     setup.iso_values = iso_values_of(frame, scene, params.iso, range);
     setup.depth = pipeline::EyeDepth(frame.view.projection);
     frame.program = models::make_isosurface(setup);
-    return kbuffer_frame(frame, isosurface_picture(params.silhouettes));
+    return kbuffer_frame(frame, isosurface_picture(params.silhouettes), params.composite);
 }
 
 pipeline::Frame layers_frame(pipeline::Frame frame, const ParticlesParams& params) {
     draw_sprites(frame, points_of(frame), params.size, SpriteColour::picture);
     frame.program = models::make_nearest_k(models::EntryKind::rgbz, params.k);
-    return kbuffer_frame(frame, models::layers_picture(params.opacity));
+    return kbuffer_frame(frame, models::layers_picture(params.opacity), params.composite);
 }
 
 pipeline::Frame build(const Scene& scene, const pipeline::View& view, const ParticlesParams& params) {

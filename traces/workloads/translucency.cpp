@@ -28,6 +28,7 @@ struct TranslucencyParams {
     Media media = Media::draws;
     bool fresnel = false;
     std::array<float, 3> background = {1.0F, 1.0F, 1.0F};
+    Composite composite = Composite::free;
 
     static constexpr auto fields() {
         using P = TranslucencyParams;
@@ -38,7 +39,8 @@ struct TranslucencyParams {
             sim::field<&P::media>("draws: each draw is an object of its own, and an entry keeps which; one: all draws "
                                   "are the surface of one object, and an entry is a depth"),
             sim::field<&P::fresnel>("surfaces transmit less at grazing angles; entries then keep the cosine, too"),
-            sim::field<&P::background>("linear RGB of the light behind everything").range(0.0F, 1.0F));
+            sim::field<&P::background>("linear RGB of the light behind everything").range(0.0F, 1.0F),
+            composite_field<P>());
     }
 };
 static_assert(sim::fully_described<TranslucencyParams>);
@@ -63,7 +65,7 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const Tran
     const Translucency objects(extinctions(params, frame.draws.size()), params.fresnel);
     frame.program = models::make_nearest_k(entry_of(params), params.k);
     frame.background = {params.background[0], params.background[1], params.background[2], 1.0F};
-    return kbuffer_frame(frame, translucency_picture(objects), pipeline::FragmentColour::cosine);
+    return kbuffer_frame(frame, translucency_picture(objects), params.composite, pipeline::FragmentColour::cosine);
 }
 
 // The shader gives cosines as colours.

@@ -47,6 +47,7 @@ struct TransparencyParams {
     Faces faces = Faces::both;
     float opacity = 0.5F;
     std::array<float, 3> background = {1.0F, 1.0F, 1.0F};
+    Composite composite = Composite::free;
     pipeline::DepthChoice depth_format = pipeline::DepthChoice::d24;
 
     static constexpr auto fields() {
@@ -63,7 +64,7 @@ struct TransparencyParams {
                 "those that the material shows"),
             sim::field<&P::opacity>("opacity of every layer").range(0.0F, 1.0F),
             sim::field<&P::background>("linear RGB behind everything").range(0.0F, 1.0F),
-            sim::field<&P::depth_format>("format of the depth surface, where there is one"));
+            sim::field<&P::depth_format>("format of the depth surface, where there is one"), composite_field<P>());
     }
 };
 static_assert(sim::fully_described<TransparencyParams>);
@@ -121,7 +122,7 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const Tran
                        {kbuffer_surface}, std::move(draws.transparent), params.faces == Faces::both);
         // Layers of depths alone are not laid over a colour, so the opaque pass then serves for its depth only.
         add_picture(graph, frame, choice.picture ? choice.picture : models::layers_picture(params.opacity),
-                    with_opaque && colours);
+                    params.composite, with_opaque && colours);
     } else {
         graph.leave_out("pass geometry", "no draw has a transparent material");
         graph.output(colour_surface);

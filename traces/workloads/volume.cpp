@@ -34,6 +34,7 @@ struct VolumeParams {
     std::uint32_t k = 8;
     bool sorted = true;
     std::array<float, 3> background = {1.0F, 1.0F, 1.0F};
+    Composite composite = Composite::free;
 
     static constexpr auto fields() {
         using P = VolumeParams;
@@ -48,7 +49,7 @@ struct VolumeParams {
             sim::field<&P::range>("scalars where the colours begin and end; none: the least and the largest"),
             sim::field<&P::k>("samples sorted per pixel").unit("samples").range(1, 64),
             sim::field<&P::sorted>("triangles are drawn in the order of their centroids, the nearest first"),
-            sim::field<&P::background>("linear RGB behind everything").range(0.0F, 1.0F));
+            sim::field<&P::background>("linear RGB behind everything").range(0.0F, 1.0F), composite_field<P>());
     }
 };
 static_assert(sim::fully_described<VolumeParams>);
@@ -104,7 +105,7 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const Volu
     setup.depth = pipeline::EyeDepth(view.projection);
     frame.program = models::make_volume(setup);
     frame.background = {params.background[0], params.background[1], params.background[2], 1.0F};
-    return kbuffer_frame(frame, volume_picture);
+    return kbuffer_frame(frame, volume_picture, params.composite);
 }
 
 } // namespace

@@ -7,6 +7,7 @@
 #include "traces/ground.hpp"
 #include "traces/scene_bounds.hpp"
 #include "traces/tetrahedra_import.hpp"
+#include "traces/trace.hpp"
 
 #include <cmath>
 #include <filesystem>
@@ -74,6 +75,7 @@ Scene load_scene(const std::string& spec) {
     }
     if (spec.starts_with("gen:")) return generate_scene(spec);
     if (is_tetrahedra_file(spec)) return import_tetrahedra(spec);
+    if (is_trace_file(spec)) return read_trace(spec).scene;
     const std::size_t hash = spec.rfind('#');
     std::error_code error; // a file whose own name has a '#' is that file
     if (hash == std::string::npos || std::filesystem::exists(spec, error)) return import_gltf(spec);

@@ -66,8 +66,8 @@ struct Scene {
 };
 
 /// Reads a scene: a path to a .gltf or .glb file, `PATH#N` for its scene number N, a .vtk or .tetm file of tetrahedra,
-/// or `gen:NAME?key=value&key=value`; each may be followed by `+ground`, which lays a floor below it.
-/// Throws sim::InputError with one line that names file, place and what was expected.
+/// what a draw trace (.rtrace) draws, or `gen:NAME?key=value&key=value`; each may be followed by `+ground`, which lays
+/// a floor below it. Throws sim::InputError with one line that names file, place and what was expected.
 Scene load_scene(const std::string& spec);
 
 /// Fills bounding box and counts (all but `triangles`), places and validates the resources. For whoever makes a scene.

@@ -82,7 +82,7 @@ pipeline::Frame kbuffer_frame(const pipeline::Frame& frame, std::shared_ptr<cons
 }
 
 Workload taking(Workload workload, void (*change)(WorkloadOptions&, const std::string&), std::string name) {
-    const auto changed = [change, name = std::move(name)](auto function) {
+    const auto changed = [change, name](auto function) {
         return [function = std::move(function), change, name](const Scene& scene, const auto& seen,
                                                               WorkloadOptions options) {
             change(options, name);
@@ -91,6 +91,10 @@ Workload taking(Workload workload, void (*change)(WorkloadOptions&, const std::s
     };
     workload.build = changed(std::move(workload.build));
     if (workload.truth) workload.truth = changed(std::move(workload.truth));
+    workload.all_parameters = [all = std::move(workload.all_parameters), change, name](WorkloadOptions options) {
+        change(options, name);
+        return all(options);
+    };
     return workload;
 }
 
@@ -110,7 +114,7 @@ void own_k(WorkloadOptions& options, const std::string& k) {
     const auto program = options.values->find("program");
     if (options.values->contains(k) || program == options.values->end() || !program->is_string()) return;
     const auto name = program->get<std::string>();
-    if (name.ends_with(".kb")) options.values[k] = models::load_user_program(name, 0).program->k();
+    if (models::is_user_program(name)) options.values[k] = models::load_user_program(name, 0).program->k();
 }
 
 const std::string& usual_workload() { return workloads().front().id; }

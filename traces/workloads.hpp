@@ -74,6 +74,10 @@ struct Workload {
     /// How rays make its picture; empty: nobody knows. The frame is that of the same scene and parameters. Throws
     /// sim::InputError where these parameters have no truth.
     std::function<TruthMethod(const Scene&, const pipeline::Frame&, const WorkloadOptions&)> truth = {};
+    /// The value of every parameter, those that were not given included: what a default of another version cannot
+    /// change.
+    std::function<sim::JsonValue(const WorkloadOptions&)> all_parameters = {};
+    std::vector<std::string> program_parameters = {}; ///< that may name a user's program
     Measured measured = Measured::colours;
     std::vector<QualityKnob> quality = {};
     std::optional<Averaging> averaging = {};

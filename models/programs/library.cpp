@@ -93,10 +93,10 @@ const std::vector<Program>& programs() {
 }
 
 ProgramChoice choose_program(std::string_view name, const ProgramOptions& options) {
-    if (name.ends_with(".kb")) {
+    if (is_user_program(name)) {
         if (!options.entry.empty())
-            throw sim::InputError(
-                fmt::format("program {}: it declares its entries; expected no kind, got '{}'", name, options.entry));
+            throw sim::InputError(fmt::format("program {}: it declares its entries; expected no kind, got '{}'",
+                                              name.substr(0, name.find('\n')), options.entry));
         return load_user_program(name, options.k, {{"opacity", options.opacity}});
     }
     const std::string id = pick(name, names_of(programs()), "program");

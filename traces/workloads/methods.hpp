@@ -41,6 +41,9 @@ Workload make_workload(std::string id, std::string summary,
     workload.build = [place, build](const Scene& scene, const pipeline::View& view, const WorkloadOptions& options) {
         return build(scene, view, read_parameters<P>(options.values, place));
     };
+    workload.all_parameters = [place](const WorkloadOptions& options) {
+        return sim::JsonValue(sim::to_json(read_parameters<P>(options.values, place)));
+    };
     if (truth != nullptr)
         workload.truth = [place, truth](const Scene& scene, const pipeline::Frame& frame,
                                         const WorkloadOptions& options) {

@@ -3,6 +3,7 @@
 // Source: Bavoil 2007, sections 4.4 and 6.1.1 (specification 004: workload W2, programs A6 and A11). Whether one pass
 // with a k-buffer does it or k passes of depth peeling (W3) is the design's choice, so the graph is the same for both.
 // Instead of A6 a program that composites may run: A7, multi-layer alpha blending, or one that the user wrote.
+#include "models/programs/language/user_program.hpp"
 #include "models/programs/library.hpp"
 #include "models/programs/nearest_k.hpp"
 #include "models/programs/pictures.hpp"
@@ -87,7 +88,7 @@ constexpr std::array<std::string_view, 3> compositing_programs{"nearest-k", "ord
 
 models::ProgramChoice program_of(const TransparencyParams& params) {
     const auto& known = compositing_programs;
-    if (!params.program.ends_with(".kb") && std::find(known.begin(), known.end(), params.program) == known.end())
+    if (!models::is_user_program(params.program) && std::find(known.begin(), known.end(), params.program) == known.end())
         throw sim::InputError(fmt::format("workload transparency: program: expected {} or a file *.kb, got '{}'{}",
                                           fmt::join(known, ", "), params.program,
                                           sim::did_you_mean(params.program, {known.begin(), known.end()})));
@@ -148,6 +149,7 @@ Workload transparency_workload() {
                    "transparency", "the k nearest fragments of each pixel, composited front to back with one opacity",
                    build, truth),
                own_k, "k");
+    workload.program_parameters = {"program"};
     workload.quality = {{"k", {"1", "2", "4", "8", "16", "32"}}};
     workload.options = {{"k", "K", "Entries per pixel of the k-buffer (default 4)"},
                         {"entry", "KIND", "What an entry holds: rgbz, z or zo (default rgbz)"},

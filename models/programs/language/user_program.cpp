@@ -111,9 +111,20 @@ ProgramChoice user_program(std::string name, std::string text, std::uint32_t k, 
     return {std::make_shared<const UserProgram>(std::move(program), std::move(compiled), entries), std::move(picture)};
 }
 
-ProgramChoice load_user_program(std::string_view path, std::uint32_t k, const language::Overrides& overrides) {
-    const fs::path file = find(path);
-    return user_program(std::string(path), sim::read_file(file, longest_text), k, overrides);
+bool is_program_file(std::string_view name) {
+    return name.ends_with(".kb") && name.find('\n') == std::string_view::npos;
+}
+
+bool is_user_program(std::string_view name) { return is_program_file(name.substr(0, name.find('\n'))); }
+
+std::string with_program_text(const std::string& name) {
+    return is_program_file(name) ? name + "\n" + sim::read_file(find(name), longest_text) : name;
+}
+
+ProgramChoice load_user_program(std::string_view name, std::uint32_t k, const language::Overrides& overrides) {
+    const std::string whole = with_program_text(std::string(name));
+    const std::size_t line = whole.find('\n');
+    return user_program(whole.substr(0, line), line == std::string::npos ? "" : whole.substr(line + 1), k, overrides);
 }
 
 std::vector<std::string> shipped_user_programs() { return ropsim_build::data_files("models/programs", ".kb"); }

@@ -1,0 +1,232 @@
+#include "traces/rtrace/records.hpp"
+
+namespace traces::rtrace {
+
+namespace {
+
+using pipeline::ComponentType;
+using pipeline::Filter;
+using pipeline::Semantic;
+using pipeline::Topology;
+using pipeline::Wrap;
+
+// The codes of the file: new ones go to the end.
+constexpr std::array<Code<Topology>, 7> topologies{{{Topology::triangles, "triangles"},
+                                                    {Topology::triangle_strip, "triangle strip"},
+                                                    {Topology::triangle_fan, "triangle fan"},
+                                                    {Topology::points, "points"},
+                                                    {Topology::lines, "lines"},
+                                                    {Topology::line_strip, "line strip"},
+                                                    {Topology::line_loop, "line loop"}}};
+constexpr std::array<Code<pipeline::IndexType>, 4> index_types{{{pipeline::IndexType::none, "none"},
+                                                                {pipeline::IndexType::u8, "u8"},
+                                                                {pipeline::IndexType::u16, "u16"},
+                                                                {pipeline::IndexType::u32, "u32"}}};
+constexpr std::array<Code<ComponentType>, 9> component_types{{{ComponentType::f32, "f32"},
+                                                              {ComponentType::f16, "f16"},
+                                                              {ComponentType::s8, "s8"},
+                                                              {ComponentType::u8, "u8"},
+                                                              {ComponentType::s16, "s16"},
+                                                              {ComponentType::u16, "u16"},
+                                                              {ComponentType::u32, "u32"},
+                                                              {ComponentType::s10_10_10_2, "s10_10_10_2"},
+                                                              {ComponentType::u10_10_10_2, "u10_10_10_2"}}};
+constexpr std::array<Code<Semantic>, 13> attribute_semantics{{{Semantic::position, "position"},
+                                                              {Semantic::normal, "normal"},
+                                                              {Semantic::colour, "colour"},
+                                                              {Semantic::secondary_colour, "secondary colour"},
+                                                              {Semantic::texcoord0, "texcoord 0"},
+                                                              {Semantic::texcoord1, "texcoord 1"},
+                                                              {Semantic::texcoord2, "texcoord 2"},
+                                                              {Semantic::texcoord3, "texcoord 3"},
+                                                              {Semantic::texcoord4, "texcoord 4"},
+                                                              {Semantic::texcoord5, "texcoord 5"},
+                                                              {Semantic::texcoord6, "texcoord 6"},
+                                                              {Semantic::texcoord7, "texcoord 7"},
+                                                              {Semantic::generic, "generic"}}};
+enum class TexelFormat : std::uint8_t { rgba8 };
+constexpr std::array<Code<TexelFormat>, 1> texel_formats{{{TexelFormat::rgba8, "rgba8"}}};
+constexpr std::array<Code<Wrap>, 4> wraps{
+    {{Wrap::repeat, "repeat"}, {Wrap::clamp, "clamp"}, {Wrap::mirror, "mirror"}, {Wrap::border, "border"}}};
+constexpr std::array<Code<Filter>, 6> filters{{{Filter::nearest, "nearest"},
+                                               {Filter::linear, "linear"},
+                                               {Filter::nearest_mip_nearest, "nearest, nearest mip"},
+                                               {Filter::linear_mip_nearest, "linear, nearest mip"},
+                                               {Filter::nearest_mip_linear, "nearest, linear mip"},
+                                               {Filter::linear_mip_linear, "linear, linear mip"}}};
+constexpr std::array<Code<pipeline::AlphaMode>, 3> alpha_modes{{{pipeline::AlphaMode::opaque, "opaque"},
+                                                                {pipeline::AlphaMode::mask, "mask"},
+                                                                {pipeline::AlphaMode::blend, "blend"}}};
+constexpr std::array<Code<LightKind>, 3> light_kinds{
+    {{LightKind::directional, "directional"}, {LightKind::point, "point"}, {LightKind::spot, "spot"}}};
+
+void visit_texts(Fields& fields, std::string_view kind, std::vector<std::string>& texts) {
+    fields.list(kind, texts, 4, [&](std::string& text, std::size_t) { fields.text("text", text); });
+}
+
+void visit_metadata(Fields& fields, Document& document) {
+    TraceMetadata& metadata = document.trace.metadata;
+    fields.text("writer", metadata.writer);
+    fields.text("name", metadata.name);
+    fields.text("licence", metadata.licence);
+    fields.text("scene", metadata.scene);
+    fields.text("scene hash", metadata.scene_hash);
+}
+
+void visit_scene(Fields& fields, Document& document) {
+    Scene& scene = document.trace.scene;
+    fields.whole("triangles", scene.triangles);
+    fields.flag("screen space", scene.screen_space);
+    fields.vector("screen extent", scene.screen_extent);
+    fields.integer("scalar exponent", scene.scalar_exponent, -1024, 1024);
+    visit_texts(fields, "note", scene.notes);
+}
+
+void visit_buffers(Fields& fields, Document& document) {
+    auto& buffers = document.trace.scene.resources->buffers;
+    fields.list("buffer", buffers, 28, [&](pipeline::Buffer& buffer, std::size_t i) {
+        document.buffers.resize(buffers.size());
+        fields.text("name", buffer.name);
+        fields.blob("bytes", document.buffers[i]);
+    });
+}
+
+void visit_geometries(Fields& fields, Document& document) {
+    auto& geometries = document.trace.scene.resources->geometries;
+    fields.list("geometry", geometries, 31, [&](pipeline::Geometry& geometry, std::size_t) {
+        fields.text("name", geometry.name);
+        fields.choice("topology", geometry.topology, topologies);
+        fields.whole("vertices", geometry.vertex_count);
+        fields.choice("index type", geometry.index_type, index_types);
+        fields.whole("index buffer", geometry.index_buffer);
+        fields.whole("index offset", geometry.index_offset);
+        fields.whole("indices", geometry.index_count);
+        fields.flag("primitive restart", geometry.primitive_restart);
+        fields.list("attribute", geometry.attributes, 24, [&](pipeline::VertexAttribute& attribute, std::size_t) {
+            fields.choice("semantic", attribute.semantic, attribute_semantics);
+            fields.choice("type", attribute.type, component_types);
+            fields.whole<std::uint8_t>("components", attribute.components, 1, 4);
+            fields.flag("normalized", attribute.normalized);
+            fields.whole("buffer", attribute.buffer);
+            fields.whole("offset", attribute.offset);
+            fields.whole("stride", attribute.stride);
+            fields.whole("divisor", attribute.divisor);
+        });
+    });
+}
+
+void visit_textures(Fields& fields, Document& document) {
+    auto& textures = document.trace.scene.resources->textures;
+    fields.list("texture", textures, 30, [&](pipeline::Texture& texture, std::size_t i) {
+        document.levels.resize(textures.size());
+        TexelFormat format = TexelFormat::rgba8;
+        fields.text("name", texture.name);
+        fields.choice("format", format, texel_formats);
+        fields.flag("sRGB", texture.srgb);
+        fields.choice("wrap u", texture.wrap_u, wraps);
+        fields.choice("wrap v", texture.wrap_v, wraps);
+        fields.choice("minification", texture.min_filter, filters);
+        fields.choice("magnification", texture.mag_filter, filters);
+        fields.vector("border", texture.border);
+        fields.list("level", texture.levels, 32, [&](pipeline::Texture::Level& level, std::size_t k) {
+            document.levels[i].resize(texture.levels.size());
+            fields.whole("width", level.width);
+            fields.whole("height", level.height);
+            fields.blob("texels", document.levels[i][k]);
+        });
+    });
+}
+
+void visit_materials(Fields& fields, Document& document) {
+    auto& materials = document.trace.scene.resources->materials;
+    fields.list("material", materials, 73, [&](pipeline::Material& material, std::size_t) {
+        fields.text("name", material.name);
+        fields.vector("base colour", material.base_colour);
+        fields.integer("base texture", material.base_texture, -1, INT32_MAX);
+        fields.whole("texcoord", material.texcoord);
+        fields.matrix("uv transform", material.uv_transform);
+        fields.choice("alpha mode", material.alpha_mode, alpha_modes);
+        fields.number("alpha cutoff", material.alpha_cutoff);
+        fields.flag("double sided", material.double_sided);
+        fields.number("transmission", material.transmission);
+        fields.flag("unlit", material.unlit);
+        fields.flag("flat", material.flat);
+    });
+}
+
+void visit_draws(Fields& fields, Document& document) {
+    auto& draws = document.trace.scene.draws;
+    fields.list("draw", draws, 40, [&](pipeline::Draw& draw, std::size_t i) {
+        document.instances.resize(draws.size());
+        document.instance_counts.resize(draws.size());
+        std::uint32_t& count = document.instance_counts[i];
+        fields.text("name", draw.name);
+        fields.whole("geometry", draw.geometry);
+        fields.whole("material", draw.material);
+        fields.whole<std::uint32_t>("instances", count, 1);
+        if (count > most_matrices_in_record) {
+            fields.blob("matrices", document.instances[i]);
+            return;
+        }
+        draw.instances.resize(count);
+        for (glm::mat4& matrix : draw.instances) fields.matrix("matrix", matrix);
+    });
+}
+
+void visit_cameras(Fields& fields, Document& document) {
+    fields.list("camera", document.trace.scene.cameras, 93, [&](Camera& camera, std::size_t) {
+        fields.text("name", camera.name);
+        fields.matrix("to world", camera.to_world);
+        fields.flag("orthographic", camera.orthographic);
+        fields.number("fovy", camera.fovy);
+        fields.number("aspect", camera.aspect);
+        fields.number("xmag", camera.xmag);
+        fields.number("ymag", camera.ymag);
+        fields.number("near", camera.near);
+        fields.number("far", camera.far);
+    });
+}
+
+void visit_lights(Fields& fields, Document& document) {
+    fields.list("light", document.trace.scene.lights, 97, [&](Light& light, std::size_t) {
+        fields.text("name", light.name);
+        fields.choice("kind", light.kind, light_kinds);
+        fields.matrix("to world", light.to_world);
+        fields.vector("colour", light.colour);
+        fields.number("intensity", light.intensity);
+        fields.number("range", light.range);
+        fields.number("inner cone", light.inner_cone);
+        fields.number("outer cone", light.outer_cone);
+    });
+}
+
+void visit_captured(Fields& fields, Document& document) {
+    CapturedFrame& frame = document.trace.frame;
+    fields.text("camera", frame.camera);
+    fields.matrix("view", frame.view.view);
+    fields.matrix("projection", frame.view.projection);
+    fields.whole("width", frame.view.width, 1U, 16384U);
+    fields.whole("height", frame.view.height, 1U, 16384U);
+    fields.whole("samples", frame.view.samples, 1U, 8U);
+    fields.text("workload", frame.workload);
+    fields.text("options", frame.options);
+    fields.text("parameters", frame.parameters);
+    visit_texts(fields, "note", frame.notes);
+}
+
+constexpr std::array<Record, 10> all{{{chunk::metadata, visit_metadata},
+                                      {chunk::scene, visit_scene},
+                                      {chunk::buffers, visit_buffers},
+                                      {chunk::geometries, visit_geometries},
+                                      {chunk::textures, visit_textures},
+                                      {chunk::materials, visit_materials},
+                                      {chunk::draws, visit_draws},
+                                      {chunk::cameras, visit_cameras},
+                                      {chunk::lights, visit_lights},
+                                      {chunk::captured, visit_captured}}};
+
+} // namespace
+
+std::span<const Record> records() { return all; }
+
+} // namespace traces::rtrace

@@ -1,0 +1,178 @@
+#include "traces/rtrace/trace_reader.hpp"
+
+#include "sim/check.hpp"
+#include "traces/camera.hpp"
+#include "traces/hash.hpp"
+#include "traces/rtrace/field_codecs.hpp"
+#include "traces/rtrace/matrices.hpp"
+#include "traces/rtrace/scene_check.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstring>
+
+namespace traces {
+
+namespace rtrace {
+
+Document TraceReader::empty_document() {
+    Document document;
+    document.trace.scene.resources = std::make_shared<pipeline::Resources>();
+    return document;
+}
+
+std::string TraceReader::Place::text() const {
+    switch (kind) {
+    case Kind::buffer:
+        return fmt::format("buffer {}", i);
+    case Kind::level:
+        return fmt::format("texture {} level {}", i, level);
+    default:
+        return fmt::format("the matrices of draw {}", i);
+    }
+}
+
+bool TraceReader::next() {
+    const auto head = file_.next();
+    if (head) heads_.push_back(*head);
+    return head.has_value();
+}
+
+void TraceReader::read() {
+    const ChunkHead& head = heads_.back();
+    const auto records = rtrace::records();
+    const auto record =
+        std::find_if(records.begin(), records.end(), [&](const Record& one) { return one.type == head.type; });
+    if (record != records.end()) {
+        read_record(*record);
+    } else if (head.type == chunk::blob) {
+        read_blob();
+    } else {
+        const bool known = head.type == chunk::done;
+        file_.require(known || !head.required(), head.offset,
+                      "chunks that version {} has, got a required '{}': a later version of ropsim may read it",
+                      format_version, head.type.text());
+        file_.check_content();
+    }
+}
+
+void TraceReader::read_record(const Record& record) {
+    const ChunkHead& head = heads_.back();
+    file_.require(seen_.insert(record.type).second, head.offset, "one chunk {}, got a second", record.type.text());
+    const std::vector<std::byte> content = file_.content();
+    Decoder decoder(content, fmt::format("{}: byte {}: chunk {}", file_.name(), head.offset, record.type.text()));
+    record.visit(decoder, document_);
+    decoder.finish();
+    await_blobs(record.type);
+}
+
+void TraceReader::await_blobs(ChunkType type) {
+    if (type == chunk::buffers)
+        for (std::size_t i = 0; i < document_.buffers.size(); ++i)
+            await(document_.buffers[i], {Place::Kind::buffer, i});
+    if (type == chunk::textures)
+        for (std::size_t i = 0; i < document_.levels.size(); ++i)
+            for (std::size_t k = 0; k < document_.levels[i].size(); ++k)
+                await(document_.levels[i][k], {Place::Kind::level, i, k});
+    if (type != chunk::draws) return;
+    for (std::size_t i = 0; i < document_.instances.size(); ++i) {
+        if (document_.instance_counts[i] <= most_matrices_in_record) continue;
+        const std::uint64_t expected = matrix_bytes * document_.instance_counts[i];
+        file_.require(document_.instances[i].bytes == expected, heads_.back().offset,
+                      "a blob of {} bytes for the {} matrices of draw {}, got {}", expected,
+                      document_.instance_counts[i], i, document_.instances[i].bytes);
+        await(document_.instances[i], {Place::Kind::instances, i});
+    }
+}
+
+void TraceReader::await(const BlobName& blob, Place place) {
+    const std::uint64_t here = heads_.back().offset;
+    file_.require(!blobs_.contains(blob.content), here, "blob {}, which {} names, behind this chunk",
+                  blob.content.hex(), place.text());
+    Awaited& awaited = awaited_[blob.content];
+    if (awaited.places.empty()) {
+        awaited.bytes = blob.bytes;
+        awaited.named_at = here;
+    } else {
+        file_.repeat(blob.bytes, place.text());
+    }
+    file_.require(awaited.bytes == blob.bytes, here, "{} bytes in blob {}, as before, got {} for {}", awaited.bytes,
+                  blob.content.hex(), blob.bytes, place.text());
+    awaited.places.push_back(place);
+}
+
+void TraceReader::read_blob() {
+    const ChunkHead head = heads_.back();
+    file_.require(blobs_.insert(head.content).second, head.offset, "each blob once, got {} again", head.content.hex());
+    const auto found = awaited_.find(head.content);
+    if (found == awaited_.end()) {
+        file_.check_content(); // of a chunk of a kind that was left out
+        return;
+    }
+    const Awaited awaited = std::move(found->second);
+    awaited_.erase(found);
+    file_.require(awaited.bytes == head.content_bytes, head.offset, "a blob of {} bytes for {}, got {}", awaited.bytes,
+                  awaited.places.front().text(), head.content_bytes);
+    std::vector<std::byte> bytes = file_.content();
+    for (std::size_t i = 1; i < awaited.places.size(); ++i) fill(awaited.places[i], bytes);
+    fill(awaited.places.front(), std::move(bytes));
+}
+
+void TraceReader::fill(Place place, std::vector<std::byte> bytes) {
+    pipeline::Resources& resources = *document_.trace.scene.resources;
+    if (place.kind == Place::Kind::buffer) {
+        resources.buffers[place.i].bytes = std::move(bytes);
+    } else if (place.kind == Place::Kind::level) {
+        std::vector<std::uint8_t>& rgba = resources.textures[place.i].levels[place.level].rgba;
+        rgba.resize(bytes.size());
+        if (!bytes.empty()) std::memcpy(rgba.data(), bytes.data(), bytes.size());
+    } else {
+        std::vector<glm::mat4>& instances = document_.trace.scene.draws[place.i].instances;
+        instances = matrices_of(bytes);
+        for (std::size_t i = 0; i < instances.size(); ++i)
+            for (int k = 0; k < 16; ++k)
+                file_.require(std::isfinite(instances[i][k / 4][k % 4]), heads_.back().offset,
+                              "finite numbers in matrix {} of draw {}", i, place.i);
+    }
+}
+
+std::vector<std::string> TraceReader::missing() const {
+    std::vector<std::string> lines;
+    for (const Record& record : records())
+        if (!seen_.contains(record.type))
+            lines.push_back(
+                fmt::format("{}: byte {}: expected a chunk {}", file_.name(), file_.file_bytes(), record.type.text()));
+    for (const auto& [content, awaited] : awaited_)
+        lines.push_back(fmt::format("{}: byte {}: expected blob {}, which {} names, got the end of the file",
+                                    file_.name(), awaited.named_at, content.hex(), awaited.places.front().text()));
+    return lines;
+}
+
+Trace TraceReader::finish() {
+    if (const auto lines = missing(); !lines.empty()) throw sim::InputError(lines.front());
+    Trace trace = std::move(document_.trace);
+    trace.scene.name = file_.name(); // with its folders, for errors
+    ContentHash hash;
+    hash.add(std::as_bytes(std::span(heads_.back().content.bytes)));
+    trace.scene.hash = hash.hex();
+    check_trace(trace);
+    trace.scene.resources->find_runs();
+    finish_scene(trace.scene);
+    check_view(trace);
+    return trace;
+}
+
+} // namespace rtrace
+
+bool is_trace_file(const std::filesystem::path& path) { return path.extension() == ".rtrace"; }
+
+Trace read_trace(const std::filesystem::path& path) {
+    rtrace::TraceReader reader(path);
+    while (reader.next()) reader.read();
+    Trace trace = reader.finish();
+    trace.scene.name = path.filename().string();
+    return trace;
+}
+
+} // namespace traces

@@ -1,0 +1,59 @@
+// Makes a trace of the chunks of a file, one after the other: no chunk is held longer than it takes to read it.
+#pragma once
+
+#include "traces/rtrace/chunk_reader.hpp"
+#include "traces/rtrace/records.hpp"
+
+#include <map>
+#include <set>
+
+namespace traces::rtrace {
+
+/// Errors are sim::InputError of one line: file, byte, what was expected.
+class TraceReader {
+  public:
+    explicit TraceReader(const std::filesystem::path& path) : file_(path) {}
+
+    /// Finds the next chunk; false at the end of the file.
+    bool next();
+    /// Reads it. When this throws, next() may still be called.
+    void read();
+    /// Once there is no next one: nothing is missing, and everything that one part says of another holds. The scene is
+    /// finished and has the trace's hash.
+    Trace finish();
+
+    const Document& document() const { return document_; }
+    const std::vector<ChunkHead>& heads() const { return heads_; }
+    const ChunkReader& file() const { return file_; }
+    /// Blobs that something names and that are not there, one line each.
+    std::vector<std::string> missing() const;
+
+  private:
+    /// A buffer, a level of a texture or the matrices of a draw.
+    struct Place {
+        enum class Kind : std::uint8_t { buffer, level, instances } kind;
+        std::size_t i = 0, level = 0;
+        std::string text() const;
+    };
+    void read_record(const Record& record);
+    void read_blob();
+    void await(const BlobName& blob, Place place);
+    void await_blobs(ChunkType type);
+    void fill(Place place, std::vector<std::byte> bytes);
+    void check_references() const;
+
+    ChunkReader file_;
+    std::vector<ChunkHead> heads_;
+    Document document_ = empty_document();
+    std::set<ChunkType> seen_;
+    struct Awaited {
+        std::uint64_t bytes = 0, named_at = 0; ///< size, and the chunk that names it
+        std::vector<Place> places;
+    };
+    std::map<ContentName, Awaited> awaited_;
+    std::set<ContentName> blobs_; ///< that were there
+
+    static Document empty_document();
+};
+
+} // namespace traces::rtrace

@@ -2,6 +2,7 @@
 
 #include "cli/frame_options.hpp"
 #include "cli/help_texts.hpp"
+#include "cli/trace_options.hpp"
 #include "reports/result.hpp"
 #include "sim/suggest.hpp"
 #include "traces/workloads.hpp"
@@ -13,13 +14,6 @@
 namespace cli {
 
 namespace {
-
-void add_output_options(CLI::App& command, OutputOptions& options) {
-    command.add_option("--out", options.directory, "Folder for result.json, tables, report.html and pictures")
-        ->type_name("DIR");
-    command.add_flag("--json", options.json, "Print result.json on standard output, and nothing else");
-    command.add_flag("--no-images", options.no_images, "Write no pictures (OpenImageIO is not loaded)");
-}
 
 void add_truth(CLI::App& command, TruthCommand& options) {
     add_scene(command, options.scene);
@@ -170,19 +164,7 @@ struct Parser {
 
         CLI::App* command = app.add_subcommand("compare", "Run several k-buffer designs on one frame");
         add_frame_options(*command, compare.frame);
-        command
-            ->add_option(
-                "--designs", compare.designs,
-                "Designs to run, separated by commas, or all; each may have settings of its own: "
-                "NAME?key=value&key=value\n(default existing with each visibility,scoreboard,blender,multipass)")
-            ->type_name("NAMES");
-        command
-            ->add_option("--equal-area", compare.equal_area,
-                         "Compare at so many bytes on chip: tile caches get what is left beside all else (without a "
-                         "number: as many as the largest design has)")
-            ->type_name("BYTES")
-            ->default_str("largest")
-            ->expected(0, 1);
+        add_designs(*command, compare);
         add_output_options(*command, compare.output);
         command->footer(compare_help);
 
@@ -256,6 +238,10 @@ struct Parser {
                         sensitivity);
 
         add_stability(*app.add_subcommand("stability", "Stiff and extreme cases beside exact arithmetic"), stability);
+        add_capture(*app.add_subcommand("capture", "A frame with all that it draws, as a draw trace"), capture);
+        add_replay(*app.add_subcommand("replay", "Run several k-buffer designs on the frame of a draw trace"), replay);
+        add_trace(*app.add_subcommand("trace", "What a draw trace holds, whether it is whole, where two differ"),
+                  trace);
         command = app.add_subcommand("describe", "Say what can be chosen and what the numbers mean");
         command
             ->add_option(
@@ -280,6 +266,9 @@ struct Parser {
     StudyCommand study;
     SensitivityCommand sensitivity;
     StabilityCommand stability;
+    CaptureCommand capture;
+    ReplayCommand replay;
+    TraceCommand trace;
     DescribeCommand describe;
     bool version = false;
 };
@@ -356,6 +345,9 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
     if (app.got_subcommand("study")) return parser.study;
     if (app.got_subcommand("sensitivity")) return parser.sensitivity;
     if (app.got_subcommand("stability")) return parser.stability;
+    if (app.got_subcommand("capture")) return parser.capture;
+    if (app.got_subcommand("replay")) return parser.replay;
+    if (app.got_subcommand("trace")) return parser.trace;
     if (app.got_subcommand("describe")) return parser.describe;
     throw UsageError(fmt::format("expected a subcommand: {}; see ropsim --help", fmt::join(subcommands(app), ", ")));
 }

@@ -5,7 +5,7 @@
 
 namespace cli {
 
-inline constexpr int status_good = 0, status_no = 4; ///< exit statuses
+inline constexpr int status_good = 0, status_bad = 1, status_no = 4; ///< exit statuses
 
 void compare(const CompareCommand& command);
 void run(const RunCommand& command);
@@ -18,6 +18,10 @@ void calibrate(const CalibrateCommand& command);
 void study(const StudyCommand& command);
 void sensitivity(const SensitivityCommand& command);
 void stability(const StabilityCommand& command);
+void capture(const CaptureCommand& command);
+void replay(const ReplayCommand& command);
+/// status_bad where the trace is faulty, or two differ.
+int trace(const TraceCommand& command);
 void describe(const DescribeCommand& command);
 
 } // namespace cli

@@ -56,12 +56,11 @@ void simulate(const reports::ComparisonRequest& request, const OutputOptions& ou
                  output.json ? "" : present(comparison, terminal_style()), reports::remarks(comparison), written);
 }
 
-void compare(const CompareCommand& command) {
-    const auto present = [](const reports::Comparison& comparison, reports::TerminalStyle style) {
-        return reports::heading(comparison, style) + "\n" + reports::designs_text(comparison, style) + "\n" +
-               blank_behind(reports::hazards_text(comparison, style)) + reports::left_out_text(comparison, style);
-    };
-    simulate(request_of(command), command.output, present);
+std::string comparison_text(const reports::Comparison& comparison, reports::TerminalStyle style) {
+    return reports::heading(comparison, style) + "\n" + reports::designs_text(comparison, style) + "\n" +
+           blank_behind(reports::hazards_text(comparison, style)) + reports::left_out_text(comparison, style);
 }
+
+void compare(const CompareCommand& command) { simulate(request_of(command), command.output, comparison_text); }
 
 } // namespace cli

@@ -30,7 +30,7 @@ _ropsim() {
     local frame="--gpu --workload --k --entry --program --size --samples --camera --light --seed --threads --set --out --json --no-images --help"
     COMPREPLY=()
     if ((COMP_CWORD == 1)); then
-        _ropsim_words "compare run truth accuracy geometry validate calibrate study sensitivity stability describe --help --version"
+        _ropsim_words "compare run truth accuracy geometry validate calibrate study sensitivity stability capture replay trace describe --help --version"
         return
     fi
     case $before in
@@ -50,6 +50,8 @@ _ropsim() {
         --reads) _ropsim_words "all position"; return ;;
         --fidelity) _ropsim_words "estimate detailed"; return ;;
         --export) _ropsim_files glb; return ;;
+        -o | --output) _ropsim_files rtrace; return ;;
+        --name | --licence) return ;;
         --out | --write) mapfile -t COMPREPLY < <(compgen -d -- "$word"); compopt -o filenames; return ;;
         --parameters) _ropsim_list "$(_ropsim_names params)"; return ;;
         --filter) _ropsim_list "$(_ropsim_names stability)"; return ;;
@@ -71,6 +73,18 @@ _ropsim() {
         geometry)
             [[ $word == -* ]] && _ropsim_words "--gpu --prepare --submission --reads --fidelity --seed --set --export --out --json --help" ||
                 _ropsim_files glb gltf ;;
+        capture)
+            [[ $word == -* ]] && _ropsim_words "--workload --k --entry --program --size --samples --camera --light --set --output --name --licence --json --help" ||
+                _ropsim_files glb gltf ;;
+        replay)
+            [[ $word == -* ]] && _ropsim_words "--gpu --designs --equal-area --seed --threads --set --out --json --no-images --help" ||
+                _ropsim_files rtrace ;;
+        trace)
+            if ((COMP_CWORD == 2)); then
+                _ropsim_words "info dump validate diff"
+            else
+                [[ $word == -* ]] && _ropsim_words "--json --help" || _ropsim_files rtrace
+            fi ;;
         validate) [[ $word == -* ]] && _ropsim_words "--leave-one-out --lights --size --out $measure" || _ropsim_words "geometry peeling deferred" ;;
         calibrate) [[ $word == -* ]] && _ropsim_words "--write --folds --seed --out $measure" || _ropsim_words "geometry peeling" ;;
         study) [[ $word == -* ]] && _ropsim_words "--out $measure" || _ropsim_words "$(_ropsim_names studies)" ;;

@@ -16,8 +16,16 @@ void add_threads(CLI::App& command, std::string& threads);
 void add_workload(CLI::App& command, std::string& workload, const std::string& text);
 /// The options that workloads declare, but for those whose name the command already uses for something else.
 void add_parameters(CLI::App& command, ParameterValues& values);
-/// All of the above, GPU, samples, seed and --set.
+void add_settings(CLI::App& command, std::vector<std::string>& settings, const std::string& text);
+/// What is drawn, how, and seen from where.
+void add_frame(CLI::App& command, FrameOptions& options);
+/// GPU, seed and threads.
+void add_machine(CLI::App& command, FrameOptions& options);
+/// All of the above.
 void add_frame_options(CLI::App& command, FrameOptions& options);
+/// Of comparisons.
+void add_designs(CLI::App& command, CompareCommand& options);
+void add_output_options(CLI::App& command, OutputOptions& options);
 
 /// Of workloads: "a, b, c".
 std::string ids_of(bool (*which)(const traces::Workload&));

@@ -18,6 +18,7 @@ inline constexpr const char* general_help = R"(Examples:
   ropsim study batching                        one question, a table and a plot
   ropsim sensitivity scene.glb                 which assumptions a comparison depends on
   ropsim stability                             stiff and extreme cases, each beside exact arithmetic
+  ropsim capture scene.glb -o scene.rtrace     the frame in one file; ropsim replay scene.rtrace runs it
   ropsim describe designs                      what can be chosen, and what it means)";
 
 inline constexpr const char* compare_help = R"(Examples:
@@ -73,6 +74,21 @@ inline constexpr const char* stability_help = R"(Examples:
   ropsim stability --filter 'half.*,peeling.eps-*'
   ropsim stability --out stability       a table, and a page with curves and pictures
   ropsim describe stability              the cases, with what is expected of each)";
+
+inline constexpr const char* capture_help = R"(Examples:
+  ropsim capture scene.glb -o scene.rtrace
+  ropsim capture scene.glb --camera 0 --size 1280x720 --k 8 -o scene.rtrace --licence 'CC0, Jane Doe'
+  ropsim capture gen:csg --workload csg --set 'workload.expression=A & !B' -o solids.rtrace)";
+
+inline constexpr const char* replay_help = R"(Examples:
+  ropsim replay scene.rtrace --out report
+  ropsim replay scene.rtrace --gpu g71 --designs existing,scoreboard,blender --set rop.queue=32)";
+
+inline constexpr const char* trace_help = R"(Examples:
+  ropsim trace info scene.rtrace
+  ropsim trace dump scene.rtrace > scene.txt
+  ropsim trace validate scene.rtrace        exit status 1 where something is wrong
+  ropsim trace diff a.rtrace b.rtrace       exit status 1 where something differs)";
 
 inline constexpr const char* describe_help = R"(Examples:
   ropsim describe                      an overview

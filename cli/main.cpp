@@ -1,6 +1,6 @@
 // The program: arguments to subcommand, outcome to exit status.
-//   0 good   1 the input is bad   2 the arguments are no command   3 an error of ropsim itself   4 a check says no
-//   130, 143 interrupted
+//   0 good   1 the input is bad, or a trace faulty or different   2 the arguments are no command   3 an error of ropsim
+//   itself   4 a check says no 130, 143 interrupted
 #include "cli/command_line.hpp"
 #include "cli/commands.hpp"
 #include "cli/console.hpp"
@@ -28,6 +28,9 @@ struct Dispatch {
     int operator()(const cli::StudyCommand& command) const { return good(cli::study, command); }
     int operator()(const cli::SensitivityCommand& command) const { return good(cli::sensitivity, command); }
     int operator()(const cli::StabilityCommand& command) const { return good(cli::stability, command); }
+    int operator()(const cli::CaptureCommand& command) const { return good(cli::capture, command); }
+    int operator()(const cli::ReplayCommand& command) const { return good(cli::replay, command); }
+    int operator()(const cli::TraceCommand& command) const { return cli::trace(command); }
     int operator()(const cli::DescribeCommand& command) const { return good(cli::describe, command); }
     int operator()(const cli::ShowText& show) const { return good(cli::print, std::string_view(show.text)); }
 

@@ -3,6 +3,7 @@
 #include "models/kbuffers/library.hpp"
 #include "pipeline/geometry/host.hpp"
 #include "reports/frame_size.hpp"
+#include "reports/result.hpp"
 #include "sim/check.hpp"
 #include "sim/suggest.hpp"
 
@@ -188,6 +189,33 @@ reports::ComparisonRequest request_of(const CompareCommand& command) {
                                           "largest design has; got '{}'",
                                           command.equal_area));
     return request;
+}
+
+reports::ComparisonRequest request_of(const ReplayCommand& command) {
+    reports::ComparisonRequest request = request_of(static_cast<const CompareCommand&>(command));
+    if (!request.workload_settings.empty())
+        throw sim::InputError(
+            fmt::format("--set: expected a number of the GPU or of a design, got workload.{}: a trace has its own "
+                        "(ropsim compare draws its scene in any way)",
+                        request.workload_settings.front()));
+    request.replay = true;
+    return request;
+}
+
+traces::CaptureRequest request_of(const CaptureCommand& command) {
+    const reports::ComparisonRequest frame = request_of(command.frame, "");
+    if (!frame.gpu_settings.empty())
+        throw sim::InputError(fmt::format("--set: expected workload.KEY=VALUE, got '{}'", frame.gpu_settings.front()));
+    return {.scene = frame.scene,
+            .camera = frame.camera,
+            .width = frame.width,
+            .height = frame.height,
+            .samples = frame.samples,
+            .workload = frame.workload.name(),
+            .settings = frame.workload_settings,
+            .writer = "ropsim " + reports::version_text(),
+            .name = command.name,
+            .licence = command.licence};
 }
 
 reports::TruthRequest request_of(const TruthCommand& command) {

@@ -8,6 +8,7 @@
 #include "reports/peeling/validation.hpp"
 #include "reports/sensitivity/sensitivity.hpp"
 #include "reports/truth/truth_run.hpp"
+#include "traces/trace.hpp"
 
 #include <list>
 #include <optional>
@@ -53,6 +54,21 @@ struct RunCommand {
     FrameOptions frame;
     OutputOptions output;
     std::string design = "existing";
+};
+
+struct ReplayCommand : CompareCommand {}; ///< its scene is the trace; camera, size, samples, workload are unused
+
+struct CaptureCommand {
+    FrameOptions frame; ///< GPU, seed and threads are unused
+    std::string file;   ///< of --output
+    std::string name, licence;
+    bool json = false;
+};
+
+struct TraceCommand {
+    std::string action; ///< info, dump, validate or diff
+    std::string file, other;
+    bool json = false;
 };
 
 struct DescribeCommand {
@@ -150,9 +166,9 @@ struct ShowText {
     std::string text;
 };
 
-using Command =
-    std::variant<CompareCommand, RunCommand, TruthCommand, AccuracyCommand, GeometryCommand, SensitivityCommand,
-                 ValidateCommand, CalibrateCommand, StudyCommand, StabilityCommand, DescribeCommand, ShowText>;
+using Command = std::variant<CompareCommand, RunCommand, TruthCommand, AccuracyCommand, GeometryCommand,
+                             SensitivityCommand, ValidateCommand, CalibrateCommand, StudyCommand, StabilityCommand,
+                             CaptureCommand, ReplayCommand, TraceCommand, DescribeCommand, ShowText>;
 
 /// The request that the options stand for; for `designs` see CompareCommand. Throws sim::InputError when a number or
 /// size is none.
@@ -160,6 +176,10 @@ reports::ComparisonRequest request_of(const FrameOptions& options, const std::st
 
 /// The same with what only comparisons have.
 reports::ComparisonRequest request_of(const CompareCommand& command);
+
+/// The same for the frame of a trace.
+reports::ComparisonRequest request_of(const ReplayCommand& command);
+traces::CaptureRequest request_of(const CaptureCommand& command);
 
 reports::TruthRequest request_of(const TruthCommand& command);
 reports::AccuracyRequest request_of(const AccuracyCommand& command);

@@ -11,6 +11,7 @@
 #include "sim/counted.hpp"
 #include "sim/described_json.hpp"
 #include "traces/camera.hpp"
+#include "traces/trace.hpp"
 
 #include <array>
 #include <fmt/format.h>
@@ -23,7 +24,18 @@ namespace reports {
 
 namespace {
 
+void read_trace(const ComparisonRequest& request, ComparisonInput& input) {
+    const traces::Trace trace = traces::read_trace(request.scene);
+    input.frame = std::make_shared<const pipeline::Frame>(traces::frame_of(trace));
+    input.scene = facts_of(trace.scene, trace.frame.camera, *input.frame, trace.frame.notes);
+    input.scene.captured = SceneFacts::Captured{trace.metadata.scene, trace.metadata.scene_hash};
+}
+
 void read_scene(const ComparisonRequest& request, ComparisonInput& input) {
+    if (request.replay) {
+        read_trace(request, input);
+        return;
+    }
     const auto options = traces::WorkloadOptions::of(request.workload_settings);
     const traces::Scene scene = traces::load_scene(request.scene);
     std::vector<std::string> notes;
@@ -48,10 +60,11 @@ void check_memory(const ComparisonInput& input, const ComparisonRequest& request
         pixels * ((kbuffer + colour + depth) * (1 + static_cast<double>(input.designs.size())) + running * kbuffer);
     const MemoryLimit limit = memory_limit();
     if (needed > limit.bytes)
-        throw sim::InputError(fmt::format("--size {}x{}{}: these designs need at least {} of memory, {} {}",
-                                          request.width, request.height,
-                                          request.samples == 1 ? "" : fmt::format(" --samples {}", request.samples),
-                                          bytes_text(needed), limit.whose, bytes_text(limit.bytes)));
+        throw sim::InputError(
+            fmt::format("{}{}x{}{}: these designs need at least {} of memory, {} {}",
+                        request.replay ? request.scene + ": " : "--size ", frame.view.width, frame.view.height,
+                        frame.view.samples == 1 ? "" : fmt::format(" --samples {}", frame.view.samples),
+                        bytes_text(needed), limit.whose, bytes_text(limit.bytes)));
 }
 
 std::vector<float> picture_of(const pipeline::Frame& frame, const std::vector<float>& colour) {
@@ -160,7 +173,8 @@ SceneFacts facts_of(const traces::Scene& scene, const std::string& camera, const
                      scene.resources->textures.size(),
                      camera,
                      traces::view_text(frame.view),
-                     scene.notes};
+                     scene.notes,
+                     {}};
     for (const auto* more : {&notes, &frame.notes}) facts.notes.insert(facts.notes.end(), more->begin(), more->end());
     return facts;
 }

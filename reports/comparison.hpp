@@ -27,6 +27,8 @@ struct ComparisonRequest {
     std::uint32_t samples = 1; ///< of a pixel: 1, 4 or 8
     traces::WorkloadChoice workload;
     std::vector<std::string> workload_settings; ///< "key=value"
+    /// The scene is a draw trace, and its frame is drawn: all from camera to workload_settings are its own.
+    bool replay = false;
     std::string gpu = "neutral";
     std::vector<std::string> gpu_settings; ///< "section.key=value"; also parameters of designs
     std::vector<std::string> designs;      ///< at least one, each a DesignVariant, no duplicates

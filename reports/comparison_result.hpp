@@ -27,6 +27,10 @@ struct SceneFacts {
     std::string camera;             ///< as asked for: "auto"
     std::string view;               ///< that it led to, as traces::make_view() takes it
     std::vector<std::string> notes; ///< what of the input is not drawn, and what was not done as asked for
+    struct Captured {
+        std::string name, hash; ///< as above, of what the trace was captured from
+    };
+    std::optional<Captured> captured; ///< of a replayed trace
 };
 
 /// The frame after the last pass, row 0 first. With several samples to a pixel, `composite` is their mean, and

@@ -43,6 +43,7 @@ ordered_json scene_json(const Comparison& comparison) {
                          {"samples", comparison.samples()},
                          {"workload", frame.workload},
                          {"notes", notes_json(scene.notes)}};
+    if (scene.captured) json["captured"] = {{"name", scene.captured->name}, {"hash", scene.captured->hash}};
     if (frame.program)
         json["kbuffer"] = {{"program", frame.program->id()},
                            {"k", frame.program->k()},

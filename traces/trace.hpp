@@ -1,4 +1,4 @@
-// Draw traces (.rtrace): a frame with all that it draws, in one self-contained file. rtrace/FORMAT.md has the format.
+// Draw traces (.rtrace): a frame with all that it draws, in one self-contained file. FORMAT.md has it byte by byte.
 #pragma once
 
 #include "traces/scene.hpp"

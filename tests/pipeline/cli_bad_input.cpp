@@ -39,7 +39,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{{},
                 2,
                 "expected a subcommand: compare, run, truth, accuracy, geometry, validate, calibrate, study, "
-                "sensitivity, stability, describe"},
+                "sensitivity, stability, capture, replay, trace, describe"},
         Mistake{{"compar"}, 2, "did you mean 'compare'?"}, Mistake{{"compare"}, 2, "scene is required"},
         Mistake{{"compare", "gen:stack", "--desings", "x"}, 2, "did you mean '--designs'?"},
         Mistake{{"compare", "gen:stack", "more"}, 2, "unexpected argument 'more'"},

@@ -122,9 +122,10 @@ std::string with_program_text(const std::string& name) {
 }
 
 ProgramChoice load_user_program(std::string_view name, std::uint32_t k, const language::Overrides& overrides) {
-    const std::string whole = with_program_text(std::string(name));
-    const std::size_t line = whole.find('\n');
-    return user_program(whole.substr(0, line), line == std::string::npos ? "" : whole.substr(line + 1), k, overrides);
+    const std::size_t line = name.find('\n');
+    if (line == std::string_view::npos)
+        return user_program(std::string(name), sim::read_file(find(name), longest_text), k, overrides);
+    return user_program(std::string(name.substr(0, line)), std::string(name.substr(line + 1)), k, overrides);
 }
 
 std::vector<std::string> shipped_user_programs() { return ropsim_build::data_files("models/programs", ".kb"); }

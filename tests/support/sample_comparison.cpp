@@ -134,7 +134,7 @@ reports::Comparison make(bool colours) {
     frame->view.width = width;
     frame->view.height = height;
     comparison.frame = frame;
-    comparison.scene = {"two <sheets>.glb", "0123456789abcdef", 4, 4, 8, 2, 0, "auto", "", {"1 line primitive"}};
+    comparison.scene = {"two <sheets>.glb", "0123456789abcdef", 4, 4, 8, 2, 0, "auto", "", {"1 line primitive"}, {}};
     comparison.gpu = {"neutral", Json({{"rop", {{"units", 16}}}}), {{"rop.units", {"public", "data sheet", ""}}}};
     comparison.reference = correct_pixels(*program);
     for (std::uint32_t i = 0; i < width * height; ++i) comparison.depth_complexity.push_back(fragments_at(i % width));

@@ -25,7 +25,7 @@ pipeline::Texture chequered() {
     texture.name = "Schachbrett \xE2\x99\x9E";
     texture.make_empty_levels(4, 2);
     for (std::uint32_t i = 0; i < 8; ++i)
-        for (const std::uint8_t channel : {i % 2 == 0 ? 255 : 20, 128, 40, 255})
+        for (const int channel : {i % 2 == 0 ? 255 : 20, 128, 40, 255})
             texture.levels[0].rgba.push_back(static_cast<std::uint8_t>(channel));
     texture.make_mips();
     texture.wrap_u = pipeline::Wrap::border;

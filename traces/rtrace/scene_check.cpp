@@ -1,8 +1,10 @@
 #include "traces/rtrace/scene_check.hpp"
 
+#include "pipeline/functional/vertex_fetch.hpp"
 #include "sim/check.hpp"
 #include "traces/camera.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <numbers>
 
@@ -67,6 +69,12 @@ void check_light(const Light& light, const Complaint& complain) {
 void check_trace(const Trace& trace) {
     const Scene& scene = trace.scene;
     const pipeline::Resources& resources = *scene.resources;
+    for (std::size_t i = 0; i < resources.geometries.size(); ++i) {
+        const pipeline::VertexAttribute* const position = resources.geometries[i].find(pipeline::Semantic::position);
+        // Else nothing of the file bounds the number of vertices.
+        Complaint(trace, "geometry", i)
+            .require(position != nullptr && position->divisor == 0, "a position of every vertex");
+    }
     for (std::size_t i = 0; i < scene.draws.size(); ++i) {
         const Complaint complain(trace, "draw", i);
         complain.require(scene.draws[i].geometry < resources.geometries.size(), "one of {} geometries, got {}",
@@ -81,7 +89,16 @@ void check_trace(const Trace& trace) {
         throw sim::InputError(fmt::format("{}: screen extent: expected 0 or more", scene.name));
 }
 
-void check_view(const Trace& trace) {
+void check_finished(const Trace& trace) {
+    const pipeline::Resources& resources = *trace.scene.resources;
+    for (std::size_t i = 0; i < trace.scene.draws.size(); ++i) {
+        const pipeline::Draw& draw = trace.scene.draws[i];
+        for (const pipeline::VertexAttribute& attribute : resources.geometries[draw.geometry].attributes)
+            Complaint(trace, "draw", i)
+                .require(pipeline::has_elements_for(resources, attribute, draw.instances.size()),
+                         "{} elements of an attribute with divisor {}",
+                         (draw.instances.size() - 1) / std::max(1U, attribute.divisor) + 1, attribute.divisor);
+    }
     const pipeline::View& view = trace.frame.view;
     if (view.samples != 1 && view.samples != 4 && view.samples != 8)
         throw sim::InputError(

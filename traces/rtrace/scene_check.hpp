@@ -9,7 +9,7 @@ namespace traces::rtrace {
 /// scene's name.
 void check_trace(const Trace& trace);
 
-/// Of the captured frame, once the scene is finished.
-void check_view(const Trace& trace);
+/// Instances and the captured frame's view, once the scene is finished.
+void check_finished(const Trace& trace);
 
 } // namespace traces::rtrace

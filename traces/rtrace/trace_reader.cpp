@@ -159,7 +159,7 @@ Trace TraceReader::finish() {
     check_trace(trace);
     trace.scene.resources->find_runs();
     finish_scene(trace.scene);
-    check_view(trace);
+    check_finished(trace);
     return trace;
 }
 

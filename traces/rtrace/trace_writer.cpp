@@ -70,7 +70,7 @@ void write_blobs(const Trace& trace, const Document& document, ChunkWriter& file
 void write_trace(const Trace& trace, const std::filesystem::path& path) {
     trace.scene.resources->read_textures();
     rtrace::check_trace(trace); // what is written can be read
-    rtrace::check_view(trace);
+    rtrace::check_finished(trace);
     Document document = document_of(trace);
     ChunkWriter file(path);
     for (const rtrace::Record& record : rtrace::records()) {

@@ -29,12 +29,12 @@ const std::vector<Case> cases{
     {"gen:discs?n=40", "transparency", {"k=2", "background=[0.1,0.2,0.3]"}},
     {"gen:showroom", "transparency", {"program=mlab", "transparent=materials"}, 1, "4,3,6,0,0,0,40"},
     {"gen:stack?n=5", "transparency", {"program=nearest_k.kb"}, 4},
-    {"gen:grid-soup?n=2", "opaque", {}, 8},
-    {"gen:discs?n=40", "blended"},
+    {"gen:grid-soup?boxes=8", "opaque", {}, 8},
+    {"gen:discs?n=40", "blended", {}},
     {"gen:grass?blades=20", "geometry"},
     {"gen:slabs", "translucency", {"fresnel=true"}},
     {"gen:csg", "csg", {"expression=A & !B"}},
-    {"gen:planes", "depth-of-field"},
+    {"gen:planes", "depth-of-field", {}},
     {"gen:tetrahedra?n=3", "isosurface", {"iso=0.4"}},
     {"gen:tetrahedra?n=3", "volume"},
     {"gen:particles?n=60", "particles"},
@@ -135,7 +135,7 @@ TEST(TraceReplay, TheProgramWritesTheSamePicturesAndFollowsTheSchema) {
     capture.insert(capture.end(), {"-o", file, "--licence", "none"});
     const auto captured = run_program(capture);
     ASSERT_EQ(captured.status, 0) << captured.error;
-    EXPECT_NE(captured.out.find("1 draw of 60"), std::string::npos) << captured.out;
+    EXPECT_NE(captured.out.find("1 draw of 1,920 triangles"), std::string::npos) << captured.out;
     ASSERT_EQ(run_program(compare).status, 0);
     const auto replay =
         run_program({"replay", file, "--designs", "existing,scoreboard", "--out", replayed.path().string(), "--json"});

@@ -136,12 +136,12 @@ void ChunkReader::decompress(Take take) {
         ZSTD_outBuffer out{piece_.data(), room, 0};
         const std::size_t before = in.pos;
         hint = ZSTD_decompressStream(zstd_.get(), &out, &in);
-        require(ZSTD_isError(hint) == 0, begin, "a zstd frame of {} bytes of content, got: {}", head_.content_bytes,
+        require(ZSTD_isError(hint) == 0, begin, "one zstd frame of {} bytes of content, got: {}", head_.content_bytes,
                 ZSTD_getErrorName(hint));
         made += out.pos;
         take(std::span<const std::byte>(piece_).first(out.pos));
         const bool stuck = out.pos == 0 && in.pos == before && (in.pos < in.size || at == head_.end());
-        require(hint == 0 || !stuck, begin, "a zstd frame of {} bytes of content in {} bytes", head_.content_bytes,
+        require(hint == 0 || !stuck, begin, "one zstd frame of {} bytes of content in {} bytes", head_.content_bytes,
                 head_.stored_bytes);
     }
     require(made == head_.content_bytes && at == head_.end() && in.pos == in.size, begin,

@@ -79,7 +79,7 @@ void visit_scene(Fields& fields, Document& document) {
     fields.flag("screen space", scene.screen_space);
     fields.vector("screen extent", scene.screen_extent);
     fields.integer("scalar exponent", scene.scalar_exponent, -1024, 1024);
-    visit_texts(fields, "note", scene.notes);
+    visit_texts(fields, "scene note", scene.notes);
 }
 
 void visit_buffers(Fields& fields, Document& document) {
@@ -211,7 +211,7 @@ void visit_captured(Fields& fields, Document& document) {
     fields.text("workload", frame.workload);
     fields.text("options", frame.options);
     fields.text("parameters", frame.parameters);
-    visit_texts(fields, "note", frame.notes);
+    visit_texts(fields, "frame note", frame.notes);
 }
 
 constexpr std::array<Record, 10> all{{{chunk::metadata, visit_metadata},

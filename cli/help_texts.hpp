@@ -77,8 +77,7 @@ inline constexpr const char* stability_help = R"(Examples:
 
 inline constexpr const char* capture_help = R"(Examples:
   ropsim capture scene.glb -o scene.rtrace
-  ropsim capture scene.glb --camera 0 --size 1280x720 --k 8 -o scene.rtrace --licence 'CC0, Jane Doe'
-  ropsim capture gen:csg --workload csg --set 'workload.expression=A & !B' -o solids.rtrace)";
+  ropsim capture scene.glb --camera 0 --size 1280x720 --k 8 -o scene.rtrace --licence 'CC0, Jane Doe')";
 
 inline constexpr const char* replay_help = R"(Examples:
   ropsim replay scene.rtrace --out report

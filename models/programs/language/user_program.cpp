@@ -118,7 +118,8 @@ bool is_program_file(std::string_view name) {
 bool is_user_program(std::string_view name) { return is_program_file(name.substr(0, name.find('\n'))); }
 
 std::string with_program_text(const std::string& name) {
-    return is_program_file(name) ? name + "\n" + sim::read_file(find(name), longest_text) : name;
+    if (!is_program_file(name)) return name;
+    return fs::path(name).filename().string() + "\n" + sim::read_file(find(name), longest_text);
 }
 
 ProgramChoice load_user_program(std::string_view name, std::uint32_t k, const language::Overrides& overrides) {

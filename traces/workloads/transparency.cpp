@@ -88,7 +88,8 @@ constexpr std::array<std::string_view, 3> compositing_programs{"nearest-k", "ord
 
 models::ProgramChoice program_of(const TransparencyParams& params) {
     const auto& known = compositing_programs;
-    if (!models::is_user_program(params.program) && std::find(known.begin(), known.end(), params.program) == known.end())
+    if (!models::is_user_program(params.program) &&
+        std::find(known.begin(), known.end(), params.program) == known.end())
         throw sim::InputError(fmt::format("workload transparency: program: expected {} or a file *.kb, got '{}'{}",
                                           fmt::join(known, ", "), params.program,
                                           sim::did_you_mean(params.program, {known.begin(), known.end()})));

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <new>
 #include <unistd.h>
+#include <utility>
 #include <zstd.h>
 
 namespace traces::rtrace {

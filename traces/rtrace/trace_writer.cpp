@@ -6,6 +6,8 @@
 #include "traces/rtrace/records.hpp"
 #include "traces/rtrace/scene_check.hpp"
 
+#include <fmt/format.h>
+
 namespace traces {
 
 namespace {

@@ -17,7 +17,8 @@ using traces::spirv::LaneWords;
 using traces::spirv::Op;
 using traces::spirv::Std450;
 
-constexpr float infinity = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
+constexpr float infinity = std::numeric_limits<float>::infinity(),
+                not_a_number = std::numeric_limits<float>::quiet_NaN();
 
 std::uint32_t bits(float value) { return std::bit_cast<std::uint32_t>(value); }
 std::uint32_t bits(std::int32_t value) { return static_cast<std::uint32_t>(value); }
@@ -107,7 +108,7 @@ TEST(SpirvOperations, ArithmeticOfFloats) {
 }
 
 TEST(SpirvOperations, ComparisonsOfFloatsWithNan) {
-    const LaneWords x = reals(1, 2, nan, -0.0F), y = reals(2, 2, 1, 0);
+    const LaneWords x = reals(1, 2, not_a_number, -0.0F), y = reals(2, 2, 1, 0);
     const auto compare = [&](Op op) { return apply(op, Of::truth, {Of::real, Of::real}, {x, y}); };
     EXPECT_EQ(compare(Op::f_ord_equal), (LaneWords{0, 1, 0, 1}));
     EXPECT_EQ(compare(Op::f_ord_not_equal), (LaneWords{1, 0, 0, 0}));
@@ -121,8 +122,9 @@ TEST(SpirvOperations, ComparisonsOfFloatsWithNan) {
     EXPECT_EQ(compare(Op::f_unord_greater_than), (LaneWords{0, 0, 1, 0}));
     EXPECT_EQ(compare(Op::f_unord_less_than_equal), (LaneWords{1, 1, 1, 1}));
     EXPECT_EQ(compare(Op::f_unord_greater_than_equal), (LaneWords{0, 1, 1, 1}));
-    EXPECT_EQ(apply(Op::is_nan, Of::truth, {Of::real}, {reals(nan, infinity, 0, 1)}), (LaneWords{1, 0, 0, 0}));
-    EXPECT_EQ(apply(Op::is_inf, Of::truth, {Of::real}, {reals(nan, infinity, -infinity, 1)}), (LaneWords{0, 1, 1, 0}));
+    EXPECT_EQ(apply(Op::is_nan, Of::truth, {Of::real}, {reals(not_a_number, infinity, 0, 1)}), (LaneWords{1, 0, 0, 0}));
+    EXPECT_EQ(apply(Op::is_inf, Of::truth, {Of::real}, {reals(not_a_number, infinity, -infinity, 1)}),
+              (LaneWords{0, 1, 1, 0}));
 }
 
 TEST(SpirvOperations, ArithmeticOfWholeNumbersWraps) {
@@ -197,7 +199,7 @@ TEST(SpirvOperations, Logic) {
 }
 
 TEST(SpirvOperations, Conversions) {
-    EXPECT_EQ(apply(Op::convert_float_to_signed, Of::whole, {Of::real}, {reals(1.9F, -1.9F, 3e9F, nan)}),
+    EXPECT_EQ(apply(Op::convert_float_to_signed, Of::whole, {Of::real}, {reals(1.9F, -1.9F, 3e9F, not_a_number)}),
               wholes(1, -1, 0x7FFFFFFF, 0));
     EXPECT_EQ(
         apply(Op::convert_float_to_signed, Of::whole, {Of::real},
@@ -238,7 +240,7 @@ TEST(SpirvOperations, RoundingKeepsSignsAndLargeNumbers) {
     EXPECT_EQ(unary(Std450::round, reals(3.5F, -3.5F, 0.49999997F, -infinity)), reals(4, -4, 0, -infinity));
     EXPECT_EQ(unary(Std450::fract, reals(2.75F, -2.75F, 3.0F, 0.5F)), reals(0.75F, 0.25F, 0, 0.5F));
     EXPECT_EQ(unary(Std450::f_abs, x), reals(2.5F, 2.5F, 0.25F, 1e20F));
-    EXPECT_EQ(unary(Std450::f_sign, reals(2, -2, 0, nan)), reals(1, -1, 0, 0));
+    EXPECT_EQ(unary(Std450::f_sign, reals(2, -2, 0, not_a_number)), reals(1, -1, 0, 0));
 }
 
 TEST(SpirvOperations, TranscendentalsAreThoseOfTheLibrary) {
@@ -280,8 +282,12 @@ TEST(SpirvOperations, MinimaMixesAndSteps) {
     const std::vector<Of> two{Of::real, Of::real}, three{Of::real, Of::real, Of::real};
     EXPECT_EQ(apply(Std450::f_min, Of::real, two, {reals(1, 2, -3, 4), reals(2, 1, -4, 4)}), reals(1, 1, -4, 4));
     EXPECT_EQ(apply(Std450::f_max, Of::real, two, {reals(1, 2, -3, 4), reals(2, 1, -4, 4)}), reals(2, 2, -3, 4));
-    EXPECT_EQ(apply(Std450::n_min, Of::real, two, {reals(nan, 2, nan, 4), reals(2, nan, 5, 3)}), reals(2, 2, 5, 3));
-    EXPECT_EQ(apply(Std450::n_max, Of::real, two, {reals(nan, 2, nan, 4), reals(2, nan, 5, 3)}), reals(2, 2, 5, 4));
+    EXPECT_EQ(
+        apply(Std450::n_min, Of::real, two, {reals(not_a_number, 2, not_a_number, 4), reals(2, not_a_number, 5, 3)}),
+        reals(2, 2, 5, 3));
+    EXPECT_EQ(
+        apply(Std450::n_max, Of::real, two, {reals(not_a_number, 2, not_a_number, 4), reals(2, not_a_number, 5, 3)}),
+        reals(2, 2, 5, 4));
     EXPECT_EQ(apply(Std450::f_clamp, Of::real, three, {reals(-1, 0.5F, 2, 9), reals(0, 0, 0, 1), reals(1, 1, 1, 3)}),
               reals(0, 0.5F, 1, 3));
     EXPECT_EQ(apply(Std450::f_mix, Of::real, three, {reals(0, 1, 2, 4), reals(1, 3, 4, 8), reals(0.5F, 0, 1, 0.25F)}),

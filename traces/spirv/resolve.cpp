@@ -249,7 +249,7 @@ void Resolver::make_moves(const Activation& activation, const PendingEdge& pendi
 void Resolver::finish_edges(Activation& activation) {
     // Of a block that goes on behind the call.
     const Block open = block_;
-    const std::vector<Operation> open_operations = std::move(block_operations_);
+    std::vector<Operation> open_operations = std::exchange(block_operations_, {});
     const Id entry = activation.function->blocks.front().label;
     for (const PendingEdge& pending : activation.edges) {
         const auto target = activation.blocks.find(pending.to);
@@ -268,7 +268,7 @@ void Resolver::finish_edges(Activation& activation) {
     }
     block_ = open;
     block_.effort += std::exchange(edge_effort_, 0);
-    block_operations_ = open_operations;
+    block_operations_ = std::move(open_operations);
 }
 
 void Resolver::instruction(const Instruction& instruction) {

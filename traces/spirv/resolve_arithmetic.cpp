@@ -36,7 +36,7 @@ bool Resolver::arithmetic(const Instruction& instruction) {
         return true;
     }
     default:
-        return linear(instruction);
+        return bit_field(instruction) || linear(instruction);
     }
 }
 

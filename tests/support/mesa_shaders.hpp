@@ -1,0 +1,59 @@
+// Fragment shaders run by Mesa's llvmpipe over a picture, with inputs that are linear over it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace tests {
+
+/// Component i is base + x * right + y * up at (x, y), which run from -1 to 1 over the picture.
+struct LinearInput {
+    std::string qualifier, type, name; ///< as the vertex shader writes them; names that begin with gl_ are built in
+    std::uint32_t components = 1;
+    std::array<float, 4> base{}, right{}, up{};
+};
+
+/// An active uniform as OpenGL reports it. Its values are the driver's to choose.
+struct ActiveUniform {
+    std::string name; ///< without a final [0]
+    std::uint32_t components = 1, columns = 1, elements = 1;
+    bool real = true, sampler = false;
+};
+
+struct ActiveBlock {
+    std::string name;
+    std::uint32_t bytes = 0;
+};
+
+/// Texels in [0,1), the same for everybody: those of place (x, y, layer) and component.
+float oracle_texel(std::uint32_t unit, std::uint32_t x, std::uint32_t y, std::uint32_t layer, std::uint32_t component);
+/// Along each side, of every texture; layers, too.
+inline constexpr std::uint32_t oracle_texture_size = 8;
+
+struct ShaderPicture {
+    std::vector<std::array<float, 4>> colour; ///< row 0 is the bottom row
+};
+
+class MesaShaders {
+  public:
+    static constexpr std::uint32_t size = 32;  ///< pixels along each side of the picture
+    static constexpr float untouched = -77.0F; ///< where fragments were discarded
+
+    /// Null when there is no such OpenGL here; then `reason` says what is missing.
+    static std::unique_ptr<MesaShaders> create(std::string& reason);
+    virtual ~MesaShaders() = default;
+
+    /// `value`: of scalar i of a uniform. `block`: of word i of a block. `unit`: the texture unit of a sampler. Throws
+    /// std::runtime_error when the shaders do not link.
+    virtual ShaderPicture draw(const std::string& fragment_source, const std::string& version,
+                               const std::vector<LinearInput>& inputs,
+                               const std::function<float(const ActiveUniform&, std::uint32_t)>& value,
+                               const std::function<float(const ActiveBlock&, std::uint32_t)>& block,
+                               const std::function<std::uint32_t(const ActiveUniform&)>& unit) = 0;
+};
+
+} // namespace tests

@@ -1,12 +1,13 @@
 #include "tests/support/mesa_shaders.hpp"
 
+#include "tests/support/oracle_textures.hpp"
+
 #if ROPSIM_HAVE_EGL
 
 #define GL_GLEXT_PROTOTYPES
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
-#include <GL/gl.h>
-#include <GL/glext.h>
+#include <GL/glcorearb.h>
 
 #include <cstdlib>
 #include <fmt/format.h>
@@ -15,6 +16,9 @@
 namespace tests {
 
 namespace {
+
+// Of the compatibility profile.
+constexpr GLenum clamp_vertex_color = 0x891A, clamp_fragment_color = 0x891B;
 
 /// Makes a context current, and after that the one that was.
 class CurrentContext {
@@ -136,8 +140,8 @@ class LlvmpipeShaders : public MesaShaders {
         glRenderbufferStorage(GL_RENDERBUFFER, GL_RGBA32F, size, size);
         glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, colour_);
         glClampColor(GL_CLAMP_READ_COLOR, GL_FALSE);
-        glClampColor(GL_CLAMP_FRAGMENT_COLOR, GL_FALSE);
-        glClampColor(GL_CLAMP_VERTEX_COLOR, GL_FALSE);
+        glClampColor(clamp_fragment_color, GL_FALSE);
+        glClampColor(clamp_vertex_color, GL_FALSE);
     }
 
     ShaderPicture draw(const std::string& fragment_source, const std::string& version,
@@ -209,7 +213,7 @@ class LlvmpipeShaders : public MesaShaders {
             for (const SamplerType& sampler : samplers)
                 if (sampler.type == type) {
                     uniform.sampler = known = true;
-                    bind_texture(sampler, location, unit(uniform), textures, buffers);
+                    bind_texture(sampler, location, uniform.elements, unit(uniform), textures, buffers);
                 }
             for (const GlType& of : gl_types)
                 if (of.type == type) {
@@ -255,13 +259,14 @@ class LlvmpipeShaders : public MesaShaders {
         }
     }
 
-    static void bind_texture(const SamplerType& sampler, GLint location, std::uint32_t unit,
+    static void bind_texture(const SamplerType& sampler, GLint location, std::uint32_t elements, std::uint32_t unit,
                              std::vector<GLuint>& textures, std::vector<GLuint>& buffers) {
         constexpr GLsizei n = oracle_texture_size;
         std::vector<std::array<float, 4>> texels(std::size_t{n} * n * n);
         for (std::uint32_t i = 0; i < texels.size(); ++i)
             for (std::uint32_t c = 0; c < 4; ++c) texels[i][c] = oracle_texel(unit, i % n, i / n % n, i / (n * n), c);
-        glUniform1i(location, static_cast<GLint>(unit));
+        const std::vector<GLint> units(elements, static_cast<GLint>(unit)); // one texture for all of an array
+        glUniform1iv(location, static_cast<GLsizei>(elements), units.data());
         glActiveTexture(GL_TEXTURE0 + unit);
         textures.push_back(0);
         glGenTextures(1, &textures.back());

@@ -29,11 +29,6 @@ struct ActiveBlock {
     std::uint32_t bytes = 0;
 };
 
-/// Texels in [0,1), the same for everybody: those of place (x, y, layer) and component.
-float oracle_texel(std::uint32_t unit, std::uint32_t x, std::uint32_t y, std::uint32_t layer, std::uint32_t component);
-/// Along each side, of every texture; layers, too.
-inline constexpr std::uint32_t oracle_texture_size = 8;
-
 struct ShaderPicture {
     std::vector<std::array<float, 4>> colour; ///< row 0 is the bottom row
 };

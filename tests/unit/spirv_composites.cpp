@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 #include <vector>
 
+namespace spirv_composites_test {
+
 namespace {
 
 using tests::SpirvAssembler;
@@ -314,3 +316,5 @@ TEST(SpirvComposites, PackingsAndTheirInverses) {
         for (std::uint32_t i = 0; i < test.in.size(); ++i) EXPECT_EQ(run.real(0, i)[2], test.out[i]) << i;
     }
 }
+
+} // namespace spirv_composites_test

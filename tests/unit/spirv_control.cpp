@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 #include <string>
 
+namespace spirv_control_test {
+
 namespace {
 
 using tests::SpirvAssembler;
@@ -326,3 +328,5 @@ TEST(SpirvControl, LargeProgramsOfNestedCallsAreRefused) {
     }
     EXPECT_NE(error_of(a.module()).find("expected a shader"), std::string::npos) << error_of(a.module());
 }
+
+} // namespace spirv_control_test

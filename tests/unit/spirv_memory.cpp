@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 #include <vector>
 
+namespace spirv_memory_test {
+
 namespace {
 
 using tests::SpirvAssembler;
@@ -203,3 +205,5 @@ TEST(SpirvMemory, WhatMayNotBeWrittenIsRefused) {
     b.store(b.uniform(b.real(), "u"), b.constant(1.0F));
     EXPECT_THROW(SpirvRun(b.module()), sim::InputError);
 }
+
+} // namespace spirv_memory_test

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+namespace spirv_module_test {
+
 namespace {
 
 using tests::SpirvAssembler;
@@ -214,3 +216,5 @@ TEST(SpirvModule, WithAnyWordReplacedItIsRefusedOrRuns) {
             refuses(changed);
         }
 }
+
+} // namespace spirv_module_test

@@ -9,6 +9,8 @@
 #include <limits>
 #include <vector>
 
+namespace spirv_operations_test {
+
 namespace {
 
 using tests::SpirvAssembler;
@@ -318,3 +320,5 @@ TEST(SpirvOperations, MinimaMixesAndSteps) {
     EXPECT_EQ(apply(Std450::find_u_msb, Of::natural, {Of::natural}, {wholes(8, 0, 1, -1)}), wholes(3, -1, 0, 31));
     EXPECT_EQ(apply(Std450::find_s_msb, Of::whole, {Of::whole}, {wholes(8, 0, -8, -1)}), wholes(3, -1, 2, -1));
 }
+
+} // namespace spirv_operations_test

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+namespace spirv_textures_test {
+
 namespace {
 
 using pipeline::Lanes;
@@ -188,3 +190,5 @@ TEST(SpirvTextures, WhatDoesNotFitIsRefused) {
              {loaded, coordinates(b, 2), sample, b.constant(1.0F)});
     EXPECT_THROW(SpirvRun(b.module()), sim::InputError);
 }
+
+} // namespace spirv_textures_test

@@ -37,7 +37,7 @@ void run(const std::vector<std::uint32_t>& words) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
     std::vector<std::uint32_t> words(size / 4);
-    std::memcpy(words.data(), bytes, words.size() * 4);
+    if (!words.empty()) std::memcpy(words.data(), bytes, words.size() * 4);
     fuzz::expect_result_or_input_error([&] { run(words); });
     return 0;
 }

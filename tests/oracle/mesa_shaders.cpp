@@ -64,9 +64,8 @@ std::string vertex_source(const std::string& version, const std::vector<LinearIn
                 text += fmt::format("{}{:#}", i == 0 ? "" : ", ", v[i]);
             return text + ")";
         };
-        if (!input.name.starts_with("gl_"))
-            declarations +=
-                fmt::format("{} {} {} {};\n", input.qualifier, modern ? "out" : "varying", input.type, input.name);
+        if (!input.declaration.empty())
+            declarations += fmt::format("{} {} {};\n", input.qualifier, modern ? "out" : "varying", input.declaration);
         statements += fmt::format("    {} = {}({} + {} * corner.x + {} * corner.y);\n",
                                   input.name == "gl_Color" ? "gl_FrontColor" : input.name, input.type,
                                   vector(input.base), vector(input.right), vector(input.up));

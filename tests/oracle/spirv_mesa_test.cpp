@@ -59,6 +59,7 @@ std::string completed_glmark2(std::string source) {
         {"vec4", "LightSourceDiffuse = vec4(0.8, 0.7, 0.9, 1.0)"},
         {"vec3", "LightSourceHalfVector = vec3(0.3, 0.5, 0.8)"},
         {"vec4", "MaterialDiffuse = vec4(0.9, 0.6, 0.4, 1.0)"},
+        {"float", "RefractiveIndex = 1.2"},
         {"int", "FragmentLoops = 5"}};
     for (const auto& [type, text] : constants) {
         const std::string name = text.substr(0, text.find(' '));
@@ -100,8 +101,17 @@ std::vector<LinearInput> linear_inputs(const Program& program) {
                                                                 : "";
         input.type = variable.components == 1 ? scalar : fmt::format("{}vec{}", prefix, variable.components);
         input.components = variable.components;
-        for (std::uint32_t element = 0; element < variable.elements; ++element) {
-            input.name = variable.elements == 1 ? variable.name : fmt::format("{}[{}]", variable.name, element);
+        // Columns of a matrix are written like elements of an array.
+        const std::uint32_t parts = variable.columns * variable.elements;
+        const std::string whole_type = variable.columns == 1 ? input.type
+                                       : variable.columns == variable.components
+                                           ? fmt::format("mat{}", variable.columns)
+                                           : fmt::format("mat{}x{}", variable.columns, variable.components);
+        if (!variable.name.starts_with("gl_"))
+            input.declaration = whole_type + " " + variable.name +
+                                (variable.elements == 1 ? "" : fmt::format("[{}]", variable.elements));
+        for (std::uint32_t part = 0; part < parts; ++part) {
+            input.name = parts == 1 ? variable.name : fmt::format("{}[{}]", variable.name, part);
             for (std::uint32_t i = 0; i < variable.components; ++i) {
                 const auto coefficient = [&](std::uint32_t which) { return random_of(input.name, 3 * i + which); };
                 input.base[i] = real ? 0.2F + coefficient(0) : std::floor(1 + 5 * coefficient(0));
@@ -109,6 +119,7 @@ std::vector<LinearInput> linear_inputs(const Program& program) {
                 input.up[i] = real && !variable.decorations.flat ? coefficient(2) - 0.5F : 0;
             }
             inputs.push_back(input);
+            input.declaration.clear();
         }
     }
     return inputs;
@@ -208,7 +219,7 @@ class Comparison {
             }
             if (variable.decorations.built_in == front_facing) quad.set_words(variable, 0, {~0U, ~0U, ~0U, ~0U});
             if (variable.decorations.built_in) continue;
-            for (std::uint32_t element = 0; element < variable.elements; ++element, ++next)
+            for (std::uint32_t part = 0; part < variable.columns * variable.elements; ++part, ++next)
                 for (std::uint32_t i = 0; i < variable.components; ++i) {
                     const LinearInput& input = inputs[next];
                     Lanes lanes{};
@@ -219,7 +230,7 @@ class Comparison {
                         words[lane] = variable.kind == Kind::real ? std::bit_cast<std::uint32_t>(lanes[lane])
                                                                   : static_cast<std::uint32_t>(lanes[lane]);
                     }
-                    quad.set_words(variable, element * variable.components + i, words);
+                    quad.set_words(variable, part * variable.components + i, words);
                 }
         }
     }
@@ -273,9 +284,13 @@ class Comparison {
                     } else if (at_a_step(program, quad, textures, inputs, {x, y}, lane, *colour, pixel)) {
                         ++difference.steps;
                     } else if (++difference.pixels <= 2) {
-                        ADD_FAILURE() << name_ << ": pixel " << x + lane % 2 << ", " << y + lane / 2 << " is "
-                                      << quad.get(*colour, 0)[lane] << ", ..., of llvmpipe " << pixel[0] << ", "
-                                      << pixel[1] << ", " << pixel[2] << ", " << pixel[3];
+                        set_inputs(program, quad, inputs, {x, y});
+                        quad.run(textures);
+                        std::string values;
+                        for (std::uint32_t i = 0; i < std::min(4U, colour->components); ++i)
+                            values += fmt::format(" {} ({})", quad.get(*colour, i)[lane], pixel[i]);
+                        ADD_FAILURE() << fmt::format("{}: pixel {}, {} is{}, in brackets llvmpipe's", name_,
+                                                     x + lane % 2, y + lane / 2, values);
                     }
                 }
         return difference;

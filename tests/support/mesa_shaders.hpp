@@ -12,7 +12,8 @@ namespace tests {
 
 /// Component i is base + x * right + y * up at (x, y), which run from -1 to 1 over the picture.
 struct LinearInput {
-    std::string qualifier, type, name; ///< as the vertex shader writes them; names that begin with gl_ are built in
+    std::string qualifier, declaration; ///< as the vertex shader writes them; none of what another one declares
+    std::string type, name;             ///< "vec3", "normals[1]"
     std::uint32_t components = 1;
     std::array<float, 4> base{}, right{}, up{};
 };

@@ -311,22 +311,37 @@ TEST(SpirvControl, InstructionsAreCounted) {
 }
 
 TEST(SpirvControl, LargeProgramsOfNestedCallsAreRefused) {
-    // Each function calls the next one twice: 2^30 operations if all were put in place.
+    // Each function calls the next one twice: 2^30 operations if all were put in place, or as many calls of nothing.
+    for (const bool empty : {false, true}) {
+        SpirvAssembler a;
+        const Id real = a.real();
+        std::vector<Id> functions;
+        for (int i = 0; i < 31; ++i) functions.push_back(a.id());
+        a.result(Op::function_call, real, {functions[0], a.constant(1.0F)});
+        for (std::size_t i = 0; i < functions.size(); ++i) {
+            const auto x = a.begin_function(functions[i], real, {real});
+            Id value = empty ? x[0] : a.result(Op::f_add, real, {x[0], x[0]});
+            if (i + 1 < functions.size())
+                for (int twice = 0; twice < 2; ++twice)
+                    value = a.result(Op::function_call, real, {functions[i + 1], empty ? x[0] : value});
+            a.write(Op::return_value, {empty ? x[0] : value});
+            a.end_function();
+        }
+        EXPECT_NE(error_of(a.module()).find("expected a "), std::string::npos) << error_of(a.module());
+    }
     SpirvAssembler a;
-    const Id real = a.real();
+    const Id nothing = a.nothing();
     std::vector<Id> functions;
     for (int i = 0; i < 31; ++i) functions.push_back(a.id());
-    a.result(Op::function_call, real, {functions[0], a.constant(1.0F)});
+    a.result(Op::function_call, nothing, {functions[0]});
     for (std::size_t i = 0; i < functions.size(); ++i) {
-        const auto x = a.begin_function(functions[i], real, {real});
-        Id value = a.result(Op::f_add, real, {x[0], x[0]});
-        if (i + 1 < functions.size())
-            for (int twice = 0; twice < 2; ++twice)
-                value = a.result(Op::function_call, real, {functions[i + 1], value});
-        a.write(Op::return_value, {value});
+        a.begin_function(functions[i], nothing, {});
+        for (int twice = 0; twice < 2 && i + 1 < functions.size(); ++twice)
+            a.result(Op::function_call, nothing, {functions[i + 1]});
+        a.write(Op::return_, {});
         a.end_function();
     }
-    EXPECT_NE(error_of(a.module()).find("expected a shader"), std::string::npos) << error_of(a.module());
+    EXPECT_NE(error_of(a.module()).find("expected a smaller shader"), std::string::npos) << error_of(a.module());
 }
 
 } // namespace spirv_control_test

@@ -20,14 +20,11 @@ std::uint32_t component_stride(const Layout& layout) {
     return layout.declared && layout.row_major ? layout.matrix_stride : 1;
 }
 
-std::uint32_t member_offset(const Module& module, const Type& structure, std::uint32_t i, Layout& layout) {
+std::uint32_t member_offset(const Type& structure, std::uint32_t i, Layout& layout) {
     const Decorations& decorations = structure.members[i].decorations;
     layout.matrix_stride = decorations.matrix_stride.value_or(0) / 4;
     layout.row_major = decorations.row_major;
-    if (layout.declared) return decorations.offset.value_or(0) / 4;
-    std::uint32_t offset = 0;
-    for (std::uint32_t before = 0; before < i; ++before) offset += module.type(structure.members[before].type).scalars;
-    return offset;
+    return layout.declared ? decorations.offset.value_or(0) / 4 : structure.members[i].first;
 }
 
 namespace {
@@ -47,7 +44,7 @@ std::uint64_t extent_of(const Module& module, const Type& type, const Layout& la
                 (!place.offset || *place.offset % 4 != 0 || place.matrix_stride.value_or(0) % 4 != 0))
                 fail(user, fmt::format("expected an offset in whole words for member {} of a block", i));
             Layout inner = layout;
-            const std::uint64_t offset = member_offset(module, type, i, inner);
+            const std::uint64_t offset = member_offset(type, i, inner);
             end = std::max(end, offset + extent_of(module, module.type(type.members[i].type), inner, user));
         }
         return std::min(too_far, end);
@@ -82,7 +79,7 @@ void place_scalars(const Module& module, const Type& type, const Layout& layout,
     case Kind::structure:
         for (std::uint32_t i = 0; i < type.count; ++i) {
             Layout inner = layout;
-            const std::uint32_t offset = member_offset(module, type, i, inner);
+            const std::uint32_t offset = member_offset(type, i, inner);
             place_scalars(module, module.type(type.members[i].type), inner, base + offset, places);
         }
         return;

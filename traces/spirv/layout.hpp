@@ -21,7 +21,7 @@ std::uint32_t column_stride(const Type& matrix, const Layout& layout);
 std::uint32_t component_stride(const Layout& layout); ///< of a matrix' column
 
 /// Where member i begins; makes `layout` that of the member.
-std::uint32_t member_offset(const Module& module, const Type& structure, std::uint32_t i, Layout& layout);
+std::uint32_t member_offset(const Type& structure, std::uint32_t i, Layout& layout);
 
 /// Words from the first to behind the last scalar. Throws when they are more than `most_uniform_words`, or a part has
 /// no place in whole words.

@@ -84,9 +84,10 @@ Type ModuleReader::structure_type(const Instruction& instruction) {
     for (std::uint32_t i = 0; i < instruction.operands; ++i) {
         const Type& member = member_type(instruction, i);
         type.depth = std::max(type.depth, member.depth + 1);
+        const std::uint32_t first = type.scalars;
         type.scalars += member.scalars;
         require(type.scalars <= largest_type, instruction, fmt::format("larger than {} scalars", largest_type));
-        Member made{operand(instruction, i), {}, {}};
+        Member made{operand(instruction, i), {}, {}, first};
         const std::pair<Id, std::uint32_t> key{instruction.id, i};
         if (const auto found = member_names_.find(key); found != member_names_.end()) made.name = found->second;
         if (const auto found = member_decorations_.find(key); found != member_decorations_.end())
@@ -140,7 +141,7 @@ Type ModuleReader::other_type(const Instruction& instruction) {
         module_.type(type.element, instruction);
         for (std::uint32_t i = 1; i < instruction.operands; ++i) {
             module_.type(operand(instruction, i), instruction);
-            type.members.push_back({operand(instruction, i), {}, {}});
+            type.members.push_back({operand(instruction, i)});
         }
         break;
     }

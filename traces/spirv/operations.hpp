@@ -36,7 +36,6 @@ std::span<const ComponentWise> std450_operations();
 /// copy: count slots from a. gather: slot i from the i-th of a, b, c, d.
 Handler copy_of(std::uint32_t count);
 Handler gather_of(std::uint32_t count); ///< 1 to 4
-Handler broadcast_uniform(std::uint32_t count);
 
 /// Lists for operations whose addresses vary. a: place in Program::lists of {count, base, then slot, stride, bound of
 /// each index}. Registers from there on; words of uniforms, with an offset for each scalar behind the indices.

@@ -77,7 +77,7 @@ std::optional<UniformPlace> Program::uniform(const Module& module, std::string_v
             std::uint32_t member = 0;
             while (member < type->count && type->members[member].name != step.name) ++member;
             if (member == type->count) return std::nullopt;
-            place.first += member_offset(module, *type, member, layout);
+            place.first += member_offset(*type, member, layout);
             type = &module.type(type->members[member].type);
         }
     }

@@ -124,6 +124,7 @@ void Quad::leave(Run& run, const Block& block) {
         return finish();
     case Ending::kill:
         run.alive &= ~run.mask;
+        if (lanes_of(run.alive) == 0) at_.fill(finished);
         if (block.edges == 0 || lanes_of(run.alive) == 0) return finish();
         return go(run, edges[0], run.lanes);
     }

@@ -84,6 +84,7 @@ void Resolver::function(const Function& function, Activation& activation) {
                                std::count_if(function.blocks.begin(), function.blocks.end(), returns) == 1;
     for (const BasicBlock& block : function.blocks) {
         activation.label = block.label;
+        spend({Op::label, function.word, 0, 0, 0, 0}, 16);
         while (!activation.constructs.empty() && activation.constructs.back().merge == block.label)
             activation.constructs.pop_back();
         // Blocks are added when they end, so this one's number is that of those before it.
@@ -177,6 +178,7 @@ void Resolver::choice(const Instruction& instruction) {
     const auto first = static_cast<std::uint32_t>(program_.edges.size());
     const Slot selector = lanes(instruction, 0, 'i', 1);
     require(instruction.operands % 2 == 0, instruction, "expected pairs of a number and a block");
+    block_.effort += instruction.operands / 2;
     block_.first_literal = static_cast<std::uint32_t>(program_.lists.size());
     edge_to(instruction, operand(instruction, 1));
     for (std::uint32_t i = 2; i < instruction.operands; i += 2) {
@@ -209,6 +211,7 @@ void Resolver::make_moves(const Activation& activation, const PendingEdge& pendi
         std::uint32_t count = 0;
     };
     std::vector<Move> moves;
+    spend(pending.user, activation.phis.size());
     for (const Phi& phi : activation.phis) {
         if (phi.block != pending.to) continue;
         std::uint32_t i = 0;
@@ -236,6 +239,7 @@ void Resolver::make_moves(const Activation& activation, const PendingEdge& pendi
     edge.first = static_cast<std::uint32_t>(program_.operations.size());
     begin_block();
     const std::vector<Move> all = moves;
+    spend(pending.user, all.size() * all.size());
     for (std::size_t i = 0; i < all.size(); ++i)
         if (overwritten(all[i])) {
             moves[i].from = allocate(pending.user, all[i].count);
@@ -243,12 +247,11 @@ void Resolver::make_moves(const Activation& activation, const PendingEdge& pendi
         }
     for (const Move& move : moves) add(move.from, move.to, move.count);
     program_.operations.insert(program_.operations.end(), block_operations_.begin(), block_operations_.end());
-    program_.blocks[edge.block].effort += block_.effort;
 }
 
 void Resolver::finish_edges(Activation& activation) {
     // Of a block that goes on behind the call.
-    const Block open = block_;
+    Block open = block_;
     std::vector<Operation> open_operations = std::exchange(block_operations_, {});
     const Id entry = activation.function->blocks.front().label;
     for (const PendingEdge& pending : activation.edges) {
@@ -257,21 +260,16 @@ void Resolver::finish_edges(Activation& activation) {
                 fmt::format("expected id {} to be a block of the function, and not its first", pending.to));
         Edge& edge = program_.edges[pending.edge];
         edge.block = target->second;
-        if (edge.block >= program_.blocks.size()) { // the last one, which goes on
-            program_.blocks.push_back({});
-            make_moves(activation, pending, edge);
-            edge_effort_ += program_.blocks.back().effort;
-            program_.blocks.pop_back();
-        } else {
-            make_moves(activation, pending, edge);
-        }
+        make_moves(activation, pending, edge);
+        Block& into = edge.block < program_.blocks.size() ? program_.blocks[edge.block] : open;
+        into.effort += block_.effort;
     }
     block_ = open;
-    block_.effort += std::exchange(edge_effort_, 0);
     block_operations_ = std::move(open_operations);
 }
 
 void Resolver::instruction(const Instruction& instruction) {
+    spend(instruction, 16 + instruction.operands);
     const auto counts = [&] {
         return instruction.op != Op::variable && instruction.op != Op::phi && instruction.op != Op::undef;
     };

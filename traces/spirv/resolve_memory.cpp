@@ -89,7 +89,7 @@ void Resolver::step(const Instruction& instruction, Pointer& pointer, Id& id, st
         require(index.scalars.size() == 1 && index.scalars[0] < of.count, instruction,
                 fmt::format("expected one of {} members", of.count));
         Layout layout = pointer.layout; // without decorations, members lie as they do in registers
-        pointer.base += member_offset(module_, of, index.scalars[0], layout);
+        pointer.base += member_offset(of, index.scalars[0], layout);
         pointer.layout = layout;
         id = of.members[index.scalars[0]].type;
         return;

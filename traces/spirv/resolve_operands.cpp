@@ -5,6 +5,12 @@
 
 namespace traces::spirv {
 
+void Resolver::spend(const Instruction& user, std::uint64_t work) {
+    constexpr std::uint64_t most = 1ULL << 25U; // well below a second
+    spent_ += work;
+    require(spent_ <= most, user, "expected a smaller shader, with its calls put in place");
+}
+
 Slot Resolver::allocate(const Instruction& user, std::uint32_t count) {
     require(count <= most_slots - slots_, user,
             fmt::format("expected a shader that needs {} registers or fewer", most_slots));

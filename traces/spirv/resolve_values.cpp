@@ -126,6 +126,7 @@ void Resolver::construct(const Instruction& instruction) {
         for (std::uint32_t k = 0; k < of.scalars; ++k) from.push_back(part.slot + static_cast<Slot>(k));
     }
     require(from.size() == result.scalars && !from.empty(), instruction, "expected more parts");
+    spend(instruction, from.size());
     if (consecutive(from)) return define_as(instruction, {Is::registers, instruction.type, from[0], 0});
     gather(from, define(instruction));
 }
@@ -140,7 +141,7 @@ std::pair<Id, std::uint32_t> Resolver::part(const Instruction& instruction, Id i
         require(composite, instruction, fmt::format("expected {} indices or fewer", i - first));
         require(index < of.count, instruction, fmt::format("expected an index below {}, got {}", of.count, index));
         if (of.kind == Kind::structure) {
-            for (std::uint32_t k = 0; k < index; ++k) offset += type(of.members[k].type).scalars;
+            offset += of.members[index].first;
             id = of.members[index].type;
         } else {
             offset += index * type(of.element).scalars;
@@ -163,6 +164,7 @@ void Resolver::insert(const Instruction& instruction) {
     const auto [of, offset] = part(instruction, whole.type, 2);
     require(of == inserted.type, instruction, "expected an object of the type of the part");
     const std::uint32_t count = type(whole.type).scalars, part_count = type(of).scalars;
+    spend(instruction, count);
     std::vector<Slot> from;
     for (std::uint32_t i = 0; i < count; ++i)
         from.push_back(i >= offset && i < offset + part_count ? inserted.slot + static_cast<Slot>(i - offset)

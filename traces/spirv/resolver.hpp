@@ -144,6 +144,8 @@ class Resolver {
     void add_call(const Instruction& instruction, const TextureCall& call, Handler handler);
 
     // Values and registers.
+    /// Resolving ends after so much work, whatever a module asks for.
+    void spend(const Instruction& user, std::uint64_t work);
     Slot allocate(const Instruction& user, std::uint32_t count);
     Slot allocate_fixed(const Instruction& user, std::uint32_t count);
     Slot fixed(const Instruction& user, std::span<const std::uint32_t> scalars);
@@ -179,7 +181,8 @@ class Resolver {
     Activation* activation_ = nullptr;
     Block block_;
     std::vector<Operation> block_operations_;
-    std::uint32_t slots_ = 0, edge_effort_ = 0;
+    std::uint32_t slots_ = 0;
+    std::uint64_t spent_ = 0;
 };
 
 } // namespace traces::spirv

@@ -63,8 +63,9 @@ struct Decorations {
 
 struct Member {
     Id type = 0;
-    std::string name;
-    Decorations decorations;
+    std::string name{};
+    Decorations decorations{};
+    std::uint32_t first = 0; ///< scalars of the members before it
 };
 
 struct Type {

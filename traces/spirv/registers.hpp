@@ -14,26 +14,26 @@ using Reals [[gnu::vector_size(16)]] = float;
 /// Place in the register file, counted in slots from what a run may change; negative ones hold constants and uniforms.
 using Slot = std::int32_t;
 
-constexpr Words words(Reals lanes) { return (Words)lanes; }
-constexpr Words words(Wholes lanes) { return (Words)lanes; }
-constexpr Words words(Words lanes) { return lanes; }
-constexpr Reals reals(Words lanes) { return (Reals)lanes; }
-constexpr Wholes wholes(Words lanes) { return (Wholes)lanes; }
+inline Words words(Reals lanes) { return (Words)lanes; }
+inline Words words(Wholes lanes) { return (Words)lanes; }
+inline Words words(Words lanes) { return lanes; }
+inline Reals reals(Words lanes) { return (Reals)lanes; }
+inline Wholes wholes(Words lanes) { return (Wholes)lanes; }
 
-constexpr Words same(std::uint32_t word) { return Words{word, word, word, word}; }
-constexpr Reals same(float number) { return Reals{number, number, number, number}; }
+inline Words same(std::uint32_t word) { return Words{word, word, word, word}; }
+inline Reals same(float number) { return Reals{number, number, number, number}; }
 
 /// Lane by lane `a` where the mask is all ones, `b` where it is 0.
-constexpr Words pick(Words mask, Words a, Words b) { return (mask & a) | (~mask & b); }
-constexpr Reals pick(Words mask, Reals a, Reals b) { return reals(pick(mask, words(a), words(b))); }
+inline Words pick(Words mask, Words a, Words b) { return (mask & a) | (~mask & b); }
+inline Reals pick(Words mask, Reals a, Reals b) { return reals(pick(mask, words(a), words(b))); }
 
 /// All ones in the lanes whose bits are set.
-constexpr Words mask_of(unsigned lanes) {
+inline Words mask_of(unsigned lanes) {
     const auto lane = [&](unsigned i) { return (lanes >> i & 1U) != 0 ? ~0U : 0U; };
     return Words{lane(0), lane(1), lane(2), lane(3)};
 }
 /// The bits of lanes that are not 0.
-constexpr unsigned lanes_of(Words mask) {
+inline unsigned lanes_of(Words mask) {
     unsigned lanes = 0;
     for (unsigned i = 0; i < 4; ++i) lanes |= mask[i] != 0 ? 1U << i : 0U;
     return lanes;

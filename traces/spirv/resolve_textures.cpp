@@ -5,6 +5,14 @@
 
 namespace traces::spirv {
 
+namespace {
+
+/// SPIR-V specification 1.6, section 3.14. Operands follow in the order of the bits.
+constexpr std::uint32_t bias_bit = 1, lod_bit = 2, gradients_bit = 4, const_offset_bit = 8, offset_bit = 16,
+                        const_offsets_bit = 32, sample_bit = 64;
+
+} // namespace
+
 const TextureReference& Resolver::reference(const Instruction& instruction, std::uint32_t i) const {
     const Id id = operand(instruction, i);
     if (id >= values_.size() || values_[id].is != Is::texture)
@@ -73,37 +81,27 @@ void Resolver::image_of(const Instruction& instruction) {
 void Resolver::image_operands(const Instruction& instruction, std::uint32_t at, TextureCall& call,
                               std::uint32_t coordinates) {
     if (at >= instruction.operands) return;
-    // SPIR-V specification, section 3.14. Operands follow in the order of the bits.
-    enum : std::uint32_t {
-        bias = 1,
-        lod = 2,
-        gradients = 4,
-        const_offset = 8,
-        offset = 16,
-        const_offsets = 32,
-        sample = 64
-    };
     const std::uint32_t mask = operand(instruction, at++);
     require((mask & ~127U) == 0, instruction, fmt::format("image operands {:#x} are not modelled", mask));
-    if ((mask & bias) != 0) call.lod = lanes(instruction, at++, 'r', 1);
-    if ((mask & lod) != 0) {
+    if ((mask & bias_bit) != 0) call.lod = lanes(instruction, at++, 'r', 1);
+    if ((mask & lod_bit) != 0) {
         const bool real = scalar_kind(type(registers(instruction, at).type)) == Kind::real;
         call.lod = lanes(instruction, at++, real ? 'r' : 'i', 1);
         require(real == (instruction.op != Op::image_fetch), instruction,
                 "expected a level of the other kind of number");
         call.level = LevelOfDetail::given;
     }
-    if ((mask & gradients) != 0) {
+    if ((mask & gradients_bit) != 0) {
         call.dx = lanes(instruction, at++, 'r', coordinates);
         call.dy = lanes(instruction, at++, 'r', coordinates);
         call.level = LevelOfDetail::gradients;
     }
-    for (const std::uint32_t kind : {const_offset, offset})
+    for (const std::uint32_t kind : {const_offset_bit, offset_bit})
         if ((mask & kind) != 0) {
             const Slot first = lanes(instruction, at++, 'i', coordinates);
             for (std::uint32_t i = 0; i < coordinates; ++i) call.offset[i] = first + static_cast<Slot>(i);
         }
-    if ((mask & const_offsets) != 0) {
+    if ((mask & const_offsets_bit) != 0) {
         const Value offsets = registers(instruction, at++);
         const Type& of = type(offsets.type);
         require(of.kind == Kind::array && of.count == 4 && of.scalars == 8 &&
@@ -111,7 +109,7 @@ void Resolver::image_operands(const Instruction& instruction, std::uint32_t at, 
                 instruction, "expected four offsets of a gather");
         for (std::uint32_t i = 0; i < 8; ++i) call.offsets[i] = offsets.slot + static_cast<Slot>(i);
     }
-    if ((mask & sample) != 0) call.sample = lanes(instruction, at++, 'i', 1);
+    if ((mask & sample_bit) != 0) call.sample = lanes(instruction, at++, 'i', 1);
 }
 
 void Resolver::add_call(const Instruction& instruction, const TextureCall& call, Handler handler) {

@@ -52,7 +52,7 @@ GLuint compiled(GLenum kind, const std::string& source) {
     throw std::runtime_error(fmt::format("llvmpipe: {}\n{}", log.data(), source));
 }
 
-std::string vertex_source(const std::string& version, const std::vector<LinearInput>& inputs) {
+std::string source_of_vertices(const std::string& version, const std::vector<LinearInput>& inputs) {
     const bool modern = version.find("#version") != std::string::npos && version.find("110") == std::string::npos &&
                         version.find("120") == std::string::npos;
     std::string declarations, statements;
@@ -150,7 +150,7 @@ class LlvmpipeShaders : public MesaShaders {
                        const std::function<std::uint32_t(const ActiveUniform&)>& unit) override {
         const CurrentContext current(display_, context_);
         const GLuint program = glCreateProgram();
-        const GLuint vertex = compiled(GL_VERTEX_SHADER, vertex_source(version, inputs));
+        const GLuint vertex = compiled(GL_VERTEX_SHADER, source_of_vertices(version, inputs));
         const GLuint fragment = compiled(GL_FRAGMENT_SHADER, fragment_source);
         glAttachShader(program, vertex);
         glAttachShader(program, fragment);

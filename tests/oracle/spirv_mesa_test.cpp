@@ -18,8 +18,6 @@
 
 namespace spirv_mesa_test {
 
-namespace {
-
 using pipeline::Lanes;
 using tests::LinearInput;
 using tests::MesaShaders;
@@ -299,8 +297,6 @@ class Comparison {
     std::string name_;
     std::vector<std::uint32_t> uniforms_;
 };
-
-} // namespace
 
 // Long, as it compiles some sixty shaders with two compilers each.
 TEST_F(SpirvMesa, LongFragmentShadersGiveLlvmpipesColours) {

@@ -52,7 +52,7 @@ GLuint compiled(GLenum kind, const std::string& source) {
     throw std::runtime_error(fmt::format("llvmpipe: {}\n{}", log.data(), source));
 }
 
-std::string source_of_vertices(const std::string& version, const std::vector<LinearInput>& inputs) {
+std::string linear_vertex_source(const std::string& version, const std::vector<LinearInput>& inputs) {
     const bool modern = version.find("#version") != std::string::npos && version.find("110") == std::string::npos &&
                         version.find("120") == std::string::npos;
     std::string declarations, statements;
@@ -150,7 +150,7 @@ class LlvmpipeShaders : public MesaShaders {
                        const std::function<std::uint32_t(const ActiveUniform&)>& unit) override {
         const CurrentContext current(display_, context_);
         const GLuint program = glCreateProgram();
-        const GLuint vertex = compiled(GL_VERTEX_SHADER, source_of_vertices(version, inputs));
+        const GLuint vertex = compiled(GL_VERTEX_SHADER, linear_vertex_source(version, inputs));
         const GLuint fragment = compiled(GL_FRAGMENT_SHADER, fragment_source);
         glAttachShader(program, vertex);
         glAttachShader(program, fragment);
@@ -299,7 +299,7 @@ class LlvmpipeShaders : public MesaShaders {
         }
         const GLint wrap =
             target == GL_TEXTURE_RECTANGLE || target == GL_TEXTURE_CUBE_MAP ? GL_CLAMP_TO_EDGE : GL_REPEAT;
-        for (const GLenum which : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
+        for (const GLenum which : {GLenum{GL_TEXTURE_WRAP_S}, GLenum{GL_TEXTURE_WRAP_T}, GLenum{GL_TEXTURE_WRAP_R}})
             glTexParameteri(target, which, wrap);
         glTexParameteri(target, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
         glTexParameteri(target, GL_TEXTURE_MAG_FILTER, GL_NEAREST);

@@ -18,6 +18,8 @@
 
 namespace spirv_mesa_test {
 
+namespace {
+
 using pipeline::Lanes;
 using tests::LinearInput;
 using tests::MesaShaders;
@@ -67,23 +69,6 @@ std::string completed_glmark2(std::string source) {
     }
     return "#define HIGHP_OR_DEFAULT\n#define MEDIUMP_OR_DEFAULT\n" + front + source;
 }
-
-class SpirvMesa : public testing::Test {
-  protected:
-    static void SetUpTestSuite() { mesa_ = MesaShaders::create(reason_).release(); }
-    static void TearDownTestSuite() {
-        delete mesa_;
-        mesa_ = nullptr;
-    }
-    void SetUp() override {
-        if (!tests::have_spirv_compiler())
-            GTEST_SKIP() << "built without glslang (packages glslang-dev and spirv-tools)";
-        if (mesa_ == nullptr) GTEST_SKIP() << "no OpenGL to compare with: " << reason_;
-    }
-
-    static inline MesaShaders* mesa_ = nullptr;
-    static inline std::string reason_;
-};
 
 /// Inputs of a program as a vertex shader makes them; whole numbers are the same everywhere.
 std::vector<LinearInput> linear_inputs(const Program& program) {
@@ -296,6 +281,25 @@ class Comparison {
 
     std::string name_;
     std::vector<std::uint32_t> uniforms_;
+};
+
+} // namespace
+
+class SpirvMesa : public testing::Test {
+  protected:
+    static void SetUpTestSuite() { mesa_ = MesaShaders::create(reason_).release(); }
+    static void TearDownTestSuite() {
+        delete mesa_;
+        mesa_ = nullptr;
+    }
+    void SetUp() override {
+        if (!tests::have_spirv_compiler())
+            GTEST_SKIP() << "built without glslang (packages glslang-dev and spirv-tools)";
+        if (mesa_ == nullptr) GTEST_SKIP() << "no OpenGL to compare with: " << reason_;
+    }
+
+    static inline MesaShaders* mesa_ = nullptr;
+    static inline std::string reason_;
 };
 
 // Long, as it compiles some sixty shaders with two compilers each.

@@ -206,7 +206,7 @@ SpirvAssembler::Words SpirvAssembler::module(bool returns) const {
     put(module, Op::label, {entry_});
     add(locals_);
     add(main_body_);
-    if (returns) put(module, Op::return_, {});
+    if (returns) put(module, Op::return_nothing, {});
     put(module, Op::function_end, {});
     add(functions_);
     return module;

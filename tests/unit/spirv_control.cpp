@@ -183,7 +183,7 @@ TEST(SpirvControl, SwitchesFallThroughAndHaveADefault) {
         a.store(result, a.result(Op::i_add, whole, {a.load(result, whole), a.constant(n)}));
     };
     a.write(Op::selection_merge, {merge, 0});
-    a.write(Op::switch_, {x, otherwise, 1, one, 0xFFFFFFFE, two});
+    a.write(Op::switch_case, {x, otherwise, 1, one, 0xFFFFFFFE, two});
     a.label(otherwise);
     add(100);
     a.write(Op::branch, {merge});
@@ -338,7 +338,7 @@ TEST(SpirvControl, LargeProgramsOfNestedCallsAreRefused) {
         a.begin_function(functions[i], nothing, {});
         for (int twice = 0; twice < 2 && i + 1 < functions.size(); ++twice)
             a.result(Op::function_call, nothing, {functions[i + 1]});
-        a.write(Op::return_, {});
+        a.write(Op::return_nothing, {});
         a.end_function();
     }
     EXPECT_NE(error_of(a.module()).find("expected a smaller shader"), std::string::npos) << error_of(a.module());

@@ -186,7 +186,7 @@ TEST(SpirvMemory, OutputsThatNobodyWritesAreNought) {
     SpirvAssembler a;
     const Id real = a.real(), written = a.output(real, 0);
     a.output(real, 1);
-    const Id counter = a.global(Storage::private_, real, a.constant(4.0F));
+    const Id counter = a.global(Storage::invocation, real, a.constant(4.0F));
     a.store(counter, a.result(Op::f_add, real, {a.load(counter, real), a.constant(1.0F)}));
     a.store(written, a.load(counter, real));
     SpirvRun run(a.module());

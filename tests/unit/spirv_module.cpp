@@ -86,7 +86,7 @@ Words rich_module() {
     const auto parameters = a.begin_function(function, real, {real, whole});
     const Id one = a.id(), otherwise = a.id(), end = a.id();
     a.write(Op::selection_merge, {end, 0});
-    a.write(Op::switch_, {parameters[1], otherwise, 1, one});
+    a.write(Op::switch_case, {parameters[1], otherwise, 1, one});
     a.label(one);
     a.write(Op::return_value, {a.extended(Std450::pow, real, {parameters[0], a.constant(2.0F)})});
     a.label(otherwise);

@@ -156,7 +156,7 @@ TEST(SpirvOperations, Bits) {
     EXPECT_EQ(both(Op::bitwise_and, x, y), (LaneWords{0, 1, 0, 0}));
     EXPECT_EQ(both(Op::bitwise_or, x, y), (LaneWords{0xF0F0F0F4, 31, 0x8000001F, 45}));
     EXPECT_EQ(both(Op::bitwise_xor, x, y), (LaneWords{0xF0F0F0F4, 30, 0x8000001F, 45}));
-    EXPECT_EQ(apply(Op::not_, Of::natural, {Of::natural}, {x}),
+    EXPECT_EQ(apply(Op::bitwise_not, Of::natural, {Of::natural}, {x}),
               (LaneWords{0x0F0F0F0F, 0xFFFFFFFE, 0x7FFFFFFF, 0xFFFFFFF3}));
     EXPECT_EQ(apply(Op::bit_reverse, Of::natural, {Of::natural}, {x}),
               (LaneWords{0x0F0F0F0F, 0x80000000, 1, 0x30000000}));

@@ -262,10 +262,10 @@ void ModuleReader::add_to_block(const Instruction& instruction) {
     switch (instruction.op) {
     case Op::branch:
     case Op::branch_conditional:
-    case Op::switch_:
+    case Op::switch_case:
     case Op::kill:
     case Op::terminate_invocation:
-    case Op::return_:
+    case Op::return_nothing:
     case Op::return_value:
     case Op::unreachable:
         in_block_ = false;

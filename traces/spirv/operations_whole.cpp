@@ -82,7 +82,7 @@ constexpr auto table = std::to_array<ComponentWise>({
     row<both>(Op::bitwise_and, "iii"),
     row<either>(Op::bitwise_or, "iii"),
     row<one_of>(Op::bitwise_xor, "iii"),
-    row<inverted>(Op::not_, "ii"),
+    row<inverted>(Op::bitwise_not, "ii"),
     row<by_word<reversed>>(Op::bit_reverse, "ii"),
     row<by_word<ones>>(Op::bit_count, "ii"),
     row<equal>(Op::i_equal, "bii"),

@@ -78,7 +78,7 @@ void Resolver::function(const Function& function, Activation& activation) {
     // The only way out of the function is its end: what follows the call goes on in the same block.
     const auto returns = [&](const BasicBlock& block) {
         const Op op = module_.instruction(block.last - 1).op;
-        return op == Op::return_ || op == Op::return_value;
+        return op == Op::return_nothing || op == Op::return_value;
     };
     const bool falls_through = activation.caller != nullptr && returns(function.blocks.back()) &&
                                std::count_if(function.blocks.begin(), function.blocks.end(), returns) == 1;
@@ -132,7 +132,7 @@ void Resolver::call(const Instruction& call) {
 
 void Resolver::leave(const Instruction& instruction) {
     const Id wanted = type(activation_->function->type).element;
-    if (instruction.op == Op::return_)
+    if (instruction.op == Op::return_nothing)
         return require(type(wanted).kind == Kind::nothing, instruction, "expected a value");
     const Value result = registers(instruction, 0);
     require(result.type == wanted, instruction, "expected a value of the function's type");
@@ -158,9 +158,9 @@ void Resolver::ending(const Instruction& instruction) {
         edge_to(instruction, operand(instruction, 2));
         return end_block(Ending::branch, condition, first);
     }
-    case Op::switch_:
+    case Op::switch_case:
         return choice(instruction);
-    case Op::return_:
+    case Op::return_nothing:
     case Op::return_value:
         leave(instruction);
         if (activation_->caller == nullptr) return end_block(Ending::finish, 0, first);

@@ -29,9 +29,9 @@ void Resolver::variables() {
     // Inputs come first: a run does not clear them.
     each([](Storage s) { return s == Storage::input; }, [&](const Variable& v) { interface_variable(v, true); });
     program_.kept_slots = slots_;
-    each([](Storage s) { return s == Storage::output || s == Storage::private_; },
+    each([](Storage s) { return s == Storage::output || s == Storage::invocation; },
          [&](const Variable& v) { interface_variable(v, false); });
-    each([](Storage s) { return s != Storage::input && s != Storage::output && s != Storage::private_; },
+    each([](Storage s) { return s != Storage::input && s != Storage::output && s != Storage::invocation; },
          [&](const Variable& v) { uniform_variable(v); });
 }
 
@@ -61,7 +61,7 @@ void Resolver::interface_variable(const Variable& variable, bool input) {
     values_[variable.id] = {Is::pointer, variable.pointer, 0, static_cast<std::uint32_t>(pointers_.size() - 1)};
     if (variable.initial != 0 && !input) initialise(user, slot, variable.initial);
     const std::vector<Id>& interface = program_.entry.interface;
-    if (variable.storage == Storage::private_ ||
+    if (variable.storage == Storage::invocation ||
         std::find(interface.begin(), interface.end(), variable.id) == interface.end())
         return;
     std::vector<InterfaceVariable>& list = input ? program_.inputs : program_.outputs;

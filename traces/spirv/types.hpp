@@ -38,7 +38,7 @@ enum class Storage : std::uint32_t {
     input = 1,
     uniform = 2,
     output = 3,
-    private_ = 6,
+    invocation = 6, ///< "Private"
     function = 7,
     push_constant = 9,
 };

@@ -121,7 +121,7 @@ double frames_per_second(const std::string& gpu, const std::string& key) {
 
 } // namespace
 
-TEST(GeometryReports, G2AndG4FiguresAreReadOffTheCurvesOfTheModel) {
+TEST(GeometryReportsLong, G2AndG4FiguresAreReadOffTheCurvesOfTheModel) {
     for (const std::string gpu : {"g70", "r420"}) {
         const auto throughput = figures_of(gpu, "F3.1"), batches = figures_of(gpu, "F3.2");
         // One draw of 0.7M vertices is the same in both figures and in T3.4.

@@ -230,7 +230,7 @@ TEST(Extremes, EachQueueAtItsSmallest) {
     }
 }
 
-TEST(Extremes, LargestMachine) {
+TEST(ExtremesLong, LargestMachine) {
     const Replay replay("gen:discs?n=30&overlap=8&width=32&height=32", {.width = 32, .height = 32});
     for (const Settings& settings :
          {Settings{"fragment.pipes=64"}, Settings{"fragment.pipes=48", "fragment.quads_in_flight=4096"},

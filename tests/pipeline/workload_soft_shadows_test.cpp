@@ -194,7 +194,7 @@ TEST(SoftShadows, KernelSkipsWhatNoLightCanChange) {
 }
 
 // 17 x 17 against 33 x 33 samples, where every point takes as many as it may.
-TEST(SoftShadowsS5, TimeGrowsWithSamplesAlmostLinearly) {
+TEST(SoftShadowsS5Long, TimeGrowsWithSamplesAlmostLinearly) {
     std::array<double, 2> cycles{};
     for (const std::size_t i : {0U, 1U}) {
         const Replay replay = shadows({"map_size=1024", "light_size=1", i == 0 ? "samples=289" : "samples=1089"});

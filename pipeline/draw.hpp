@@ -44,9 +44,24 @@ enum class Semantic : std::uint8_t {
     texcoord5,
     texcoord6,
     texcoord7,
-    generic
+    generic, ///< number 0; nothing in hardware tells them apart
+    generic1,
+    generic2,
+    generic3,
+    generic4,
+    generic5,
+    generic6,
+    generic7,
+    generic8,
+    generic9,
+    generic10,
+    generic11,
+    generic12,
+    generic13,
+    generic14,
+    generic15
 };
-inline constexpr std::uint32_t semantics = 13;
+inline constexpr std::uint32_t semantics = 28;
 inline constexpr std::uint32_t texcoord_sets = 8;
 /// Texture coordinates of set 0 to 7.
 constexpr Semantic texcoord(std::uint32_t set) {
@@ -221,5 +236,7 @@ template <>
 struct sim::EnumNames<pipeline::Semantic> {
     static constexpr std::array<std::string_view, pipeline::semantics> names{
         "position",  "normal",    "colour",    "secondary_colour", "texcoord0", "texcoord1", "texcoord2",
-        "texcoord3", "texcoord4", "texcoord5", "texcoord6",        "texcoord7", "generic"};
+        "texcoord3", "texcoord4", "texcoord5", "texcoord6",        "texcoord7", "generic",   "generic1",
+        "generic2",  "generic3",  "generic4",  "generic5",         "generic6",  "generic7",  "generic8",
+        "generic9",  "generic10", "generic11", "generic12",        "generic13", "generic14", "generic15"};
 };

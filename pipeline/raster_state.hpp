@@ -172,7 +172,8 @@ struct RasterState {
     FaceCulling culling = FaceCulling::by_material;
     bool front_is_clockwise = false; ///< on the screen, for culling by face and for stencil faces
     ProvokingVertex provoking = ProvokingVertex::last;
-    float point_size = 1.0F;      ///< pixels along a side of the square
+    float point_size = 1.0F;           ///< pixels along a side of the square
+    bool point_size_of_vertex = false; ///< the vertex program says it instead
     bool point_sprites = false;   ///< texture coordinates run from 0 to 1 over a point, from the left and from the top
     float line_width = 1.0F;      ///< pixels across the larger extent of the line, rounded
     std::uint8_t clip_planes = 0; ///< bit i: plane i cuts

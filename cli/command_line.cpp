@@ -239,9 +239,12 @@ struct Parser {
 
         add_stability(*app.add_subcommand("stability", "Stiff and extreme cases beside exact arithmetic"), stability);
         add_capture(*app.add_subcommand("capture", "A frame with all that it draws, as a draw trace"), capture);
+        add_record(*app.add_subcommand("record", "Frames that a program draws with OpenGL, as a draw trace"), record);
+        add_import(*app.add_subcommand("import", "Frames of an apitrace file, as a draw trace"), import_frames);
         add_replay(*app.add_subcommand("replay", "Run several k-buffer designs on the frame of a draw trace"), replay);
-        add_trace(*app.add_subcommand("trace", "What a draw trace holds, whether it is whole, where two differ"),
-                  trace);
+        add_trace(
+            *app.add_subcommand("trace", "What a draw trace holds, whether it is whole, where two differ; parts of it"),
+            trace);
         command = app.add_subcommand("describe", "Say what can be chosen and what the numbers mean");
         command
             ->add_option(
@@ -267,6 +270,8 @@ struct Parser {
     SensitivityCommand sensitivity;
     StabilityCommand stability;
     CaptureCommand capture;
+    RecordCommand record;
+    ImportCommand import_frames;
     ReplayCommand replay;
     TraceCommand trace;
     DescribeCommand describe;
@@ -289,7 +294,8 @@ std::vector<std::string> subcommands(const CLI::App& app) {
 
 // What nothing took: a mistyped option, or one argument too many.
 void refuse_extras(const CLI::App& command) {
-    const std::vector<std::string> extras = command.remaining();
+    std::vector<std::string> extras = command.remaining();
+    std::erase(extras, "--"); // behind it stand the words of a program
     if (extras.empty()) return;
     const std::string place = command.get_parent() == nullptr ? "" : command.get_name() + ": ";
     const auto is_option = [](const std::string& word) { return word.size() > 1 && word.front() == '-'; };
@@ -346,6 +352,8 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
     if (app.got_subcommand("sensitivity")) return parser.sensitivity;
     if (app.got_subcommand("stability")) return parser.stability;
     if (app.got_subcommand("capture")) return parser.capture;
+    if (app.got_subcommand("record")) return parser.record;
+    if (app.got_subcommand("import")) return parser.import_frames;
     if (app.got_subcommand("replay")) return parser.replay;
     if (app.got_subcommand("trace")) return parser.trace;
     if (app.got_subcommand("describe")) return parser.describe;

@@ -19,6 +19,8 @@ void study(const StudyCommand& command);
 void sensitivity(const SensitivityCommand& command);
 void stability(const StabilityCommand& command);
 void capture(const CaptureCommand& command);
+void record(const RecordCommand& command);
+void import_frames(const ImportCommand& command);
 void replay(const ReplayCommand& command);
 /// status_bad where the trace is faulty, or two differ.
 int trace(const TraceCommand& command);

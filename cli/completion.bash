@@ -30,7 +30,7 @@ _ropsim() {
     local frame="--gpu --workload --k --entry --program --size --samples --camera --light --seed --threads --set --out --json --no-images --help"
     COMPREPLY=()
     if ((COMP_CWORD == 1)); then
-        _ropsim_words "compare run truth accuracy geometry validate calibrate study sensitivity stability capture replay trace describe --help --version"
+        _ropsim_words "compare run truth accuracy geometry validate calibrate study sensitivity stability capture record import replay trace describe --help --version"
         return
     fi
     case $before in
@@ -76,6 +76,12 @@ _ropsim() {
         capture)
             [[ $word == -* ]] && _ropsim_words "--workload --k --entry --program --size --samples --camera --light --set --output --name --licence --json --help" ||
                 _ropsim_files glb gltf ;;
+        record)
+            [[ $word == -* ]] && _ropsim_words "--frames --output --isotropic --name --licence --json --help" ||
+                mapfile -t COMPREPLY < <(compgen -c -- "$word") ;;
+        import)
+            [[ $word == -* ]] && _ropsim_words "--frames --output --isotropic --name --licence --json --help" ||
+                _ropsim_files trace ;;
         replay)
             [[ $word == -* ]] && _ropsim_words "--gpu --designs --equal-area --seed --threads --set --out --json --no-images --help" ||
                 _ropsim_files rtrace ;;

@@ -19,6 +19,7 @@ inline constexpr const char* general_help = R"(Examples:
   ropsim sensitivity scene.glb                 which assumptions a comparison depends on
   ropsim stability                             stiff and extreme cases, each beside exact arithmetic
   ropsim capture scene.glb -o scene.rtrace     the frame in one file; ropsim replay scene.rtrace runs it
+  ropsim record -o game.rtrace -- game         frames that a program draws with OpenGL, in one file
   ropsim describe designs                      what can be chosen, and what it means)";
 
 inline constexpr const char* compare_help = R"(Examples:
@@ -79,15 +80,26 @@ inline constexpr const char* capture_help = R"(Examples:
   ropsim capture scene.glb -o scene.rtrace
   ropsim capture scene.glb --camera 0 --size 1280x720 --k 8 -o scene.rtrace --licence 'CC0, Jane Doe')";
 
+inline constexpr const char* record_help = R"(Examples:
+  ropsim record -o gears.rtrace -- glxgears
+  ropsim record --frames 100:102 -o bunny.rtrace -- glmark2 --size 640x480 -b build:duration=5)";
+
+inline constexpr const char* import_help = R"(Examples:
+  ropsim import game.trace -o game.rtrace
+  ropsim import game.trace --frames 7:8 --isotropic -o frame.rtrace)";
+
 inline constexpr const char* replay_help = R"(Examples:
   ropsim replay scene.rtrace --out report
-  ropsim replay scene.rtrace --gpu g71 --designs existing,scoreboard,blender --set rop.queue=32)";
+  ropsim replay scene.rtrace --gpu g71 --designs existing,scoreboard,blender --set rop.queue=32
+  ropsim replay game.rtrace --frames 2:4 --kbuffer blended --k 8    of an application's frames: its blended draws)";
 
 inline constexpr const char* trace_help = R"(Examples:
   ropsim trace info scene.rtrace
   ropsim trace dump scene.rtrace > scene.txt
   ropsim trace validate scene.rtrace        exit status 1 where something is wrong
-  ropsim trace diff a.rtrace b.rtrace       exit status 1 where something differs)";
+  ropsim trace diff a.rtrace b.rtrace       exit status 1 where something differs
+  ropsim trace cut game.rtrace --frames 7:8 -o frame.rtrace
+  ropsim trace cut frame.rtrace --draws 20:30 -o draws.rtrace)";
 
 inline constexpr const char* describe_help = R"(Examples:
   ropsim describe                      an overview

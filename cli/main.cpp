@@ -29,6 +29,8 @@ struct Dispatch {
     int operator()(const cli::SensitivityCommand& command) const { return good(cli::sensitivity, command); }
     int operator()(const cli::StabilityCommand& command) const { return good(cli::stability, command); }
     int operator()(const cli::CaptureCommand& command) const { return good(cli::capture, command); }
+    int operator()(const cli::RecordCommand& command) const { return good(cli::record, command); }
+    int operator()(const cli::ImportCommand& command) const { return good(cli::import_frames, command); }
     int operator()(const cli::ReplayCommand& command) const { return good(cli::replay, command); }
     int operator()(const cli::TraceCommand& command) const { return cli::trace(command); }
     int operator()(const cli::DescribeCommand& command) const { return good(cli::describe, command); }

@@ -1,6 +1,8 @@
 #include "cli/options.hpp"
 
+#include "cli/command_line.hpp"
 #include "models/kbuffers/library.hpp"
+#include "models/programs/mlab.hpp"
 #include "pipeline/geometry/host.hpp"
 #include "reports/frame_size.hpp"
 #include "reports/result.hpp"
@@ -199,6 +201,8 @@ reports::ComparisonRequest request_of(const ReplayCommand& command) {
                         "(ropsim compare draws its scene in any way)",
                         request.workload_settings.front()));
     request.replay = true;
+    request.replayed = {command.frames, command.kbuffer, parse_count("--k", command.k, models::most_mlab_nodes),
+                        command.cold};
     return request;
 }
 
@@ -329,6 +333,16 @@ std::vector<std::uint32_t> lights_of(const std::string& text) {
         counts.push_back(*count);
     }
     return counts;
+}
+
+traces::CutRange range_of(const std::string& option, const std::string& text) {
+    const std::size_t colon = text.find(':');
+    if (colon != std::string::npos) {
+        const auto first = parse<std::uint32_t>(std::string_view(text).substr(0, colon));
+        const auto end = parse<std::uint32_t>(std::string_view(text).substr(colon + 1));
+        if (first && end) return {*first, *end};
+    }
+    throw UsageError(fmt::format("{}: expected two numbers as in 2:5, got '{}'", option, text));
 }
 
 reports::FrameSize size_of(const std::string& text) {

@@ -8,6 +8,7 @@
 #include "reports/peeling/validation.hpp"
 #include "reports/sensitivity/sensitivity.hpp"
 #include "reports/truth/truth_run.hpp"
+#include "traces/recording/cut.hpp"
 #include "traces/trace.hpp"
 
 #include <list>
@@ -56,7 +57,11 @@ struct RunCommand {
     std::string design = "existing";
 };
 
-struct ReplayCommand : CompareCommand {}; ///< its scene is the trace; camera, size, samples, workload are unused
+struct ReplayCommand : CompareCommand { ///< its scene is the trace; camera, size, samples, workload are unused
+    std::string frames, kbuffer;        ///< as of traces::ReplayOptions
+    std::string k = "4";
+    bool cold = false; ///< of --cold-caches
+};
 
 struct CaptureCommand {
     FrameOptions frame; ///< GPU, seed and threads are unused
@@ -65,9 +70,24 @@ struct CaptureCommand {
     bool json = false;
 };
 
+/// What record and import share.
+struct RecordingOptions {
+    std::string frames; ///< FIRST:END; empty: the first ten
+    std::string file;   ///< of --output
+    std::string name, licence;
+    bool isotropic = false, json = false;
+};
+struct RecordCommand : RecordingOptions {
+    std::vector<std::string> program; ///< and its arguments
+};
+struct ImportCommand : RecordingOptions {
+    std::string trace; ///< an apitrace file
+};
+
 struct TraceCommand {
-    std::string action; ///< info, dump, validate or diff
+    std::string action; ///< info, dump, validate, diff or cut
     std::string file, other;
+    std::string frames, draws, output; ///< of cut: "first:end"; the file to write
     bool json = false;
 };
 
@@ -166,9 +186,10 @@ struct ShowText {
     std::string text;
 };
 
-using Command = std::variant<CompareCommand, RunCommand, TruthCommand, AccuracyCommand, GeometryCommand,
-                             SensitivityCommand, ValidateCommand, CalibrateCommand, StudyCommand, StabilityCommand,
-                             CaptureCommand, ReplayCommand, TraceCommand, DescribeCommand, ShowText>;
+using Command =
+    std::variant<CompareCommand, RunCommand, TruthCommand, AccuracyCommand, GeometryCommand, SensitivityCommand,
+                 ValidateCommand, CalibrateCommand, StudyCommand, StabilityCommand, CaptureCommand, RecordCommand,
+                 ImportCommand, ReplayCommand, TraceCommand, DescribeCommand, ShowText>;
 
 /// The request that the options stand for; for `designs` see CompareCommand. Throws sim::InputError when a number or
 /// size is none.
@@ -199,6 +220,8 @@ std::uint64_t seed_of(const std::string& text);
 std::vector<std::string> list_of(const std::string& text);
 /// Of --lights: numbers of lights, separated by commas.
 std::vector<std::uint32_t> lights_of(const std::string& text);
+/// FIRST:END, two numbers; `option` is for the message. Throws UsageError.
+traces::CutRange range_of(const std::string& option, const std::string& text);
 /// Of --size: WxH.
 reports::FrameSize size_of(const std::string& text);
 

@@ -8,6 +8,8 @@
 namespace cli {
 
 void add_capture(CLI::App& command, CaptureCommand& options);
+void add_record(CLI::App& command, RecordCommand& options);
+void add_import(CLI::App& command, ImportCommand& options);
 void add_replay(CLI::App& command, ReplayCommand& options);
 void add_trace(CLI::App& command, TraceCommand& options);
 

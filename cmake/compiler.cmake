@@ -19,7 +19,7 @@ endif()
 target_compile_options(ropsim_compiler INTERFACE -ffp-contract=off)
 
 if(ROPSIM_SANITIZE)
-    add_compile_options(-fsanitize=${ROPSIM_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -O1 -g1)
+    add_compile_options(-fsanitize=${ROPSIM_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -O1) # a report names functions; -g1 adds lines
     add_link_options(-fsanitize=${ROPSIM_SANITIZE})
 endif()
 if(ROPSIM_FUZZ)

@@ -19,6 +19,21 @@ endif()
 if(ROPSIM_RAYS)
     find_package(embree 3 REQUIRED)
 endif()
+# Found one by one, as the CMake package of glslang asks for programs of another Debian package. Static libraries that are
+# not instrumented look wrong to a sanitizer.
+find_path(GLSLANG_INCLUDE glslang/Public/ShaderLang.h)
+set(ROPSIM_GLSLANG "")
+foreach(library SPIRV glslang MachineIndependent GenericCodeGen OSDependent OGLCompiler HLSL SPIRV-Tools-opt SPIRV-Tools
+        glslang-default-resource-limits)
+    find_library(GLSLANG_${library} ${library})
+    if(NOT GLSLANG_INCLUDE OR NOT GLSLANG_${library} OR ROPSIM_SANITIZE)
+        message(STATUS "No glslang (packages glslang-dev, spirv-tools) or a sanitizer: GLSL will not be compiled")
+        set(ROPSIM_GLSLANG "")
+        break()
+    endif()
+    list(APPEND ROPSIM_GLSLANG "${GLSLANG_${library}}")
+endforeach()
+find_path(ROPSIM_GL_HEADERS GL/glext.h REQUIRED) # names of OpenGL: package libgl-dev
 if(ROPSIM_TESTS)
     find_package(GTest REQUIRED)
     find_package(rapidcheck REQUIRED)

@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <functional>
 #include <glm/glm.hpp>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -183,13 +184,20 @@ struct Material {
     bool transparent() const { return alpha_mode == AlphaMode::blend || transmission > 0.0F; }
 };
 
+class VertexProgram;
+
 /// One draw call: a geometry with a material, once per model matrix.
 struct Draw {
     std::string name;
     std::uint32_t geometry = 0;
     std::uint32_t material = 0;
     std::vector<glm::mat4> instances; ///< model-to-world matrices, at least one
+    /// Makes positions and varyings of all attributes of the geometry, in place of the matrices; null: none.
+    std::shared_ptr<const VertexProgram> program{};
 };
+
+/// Where the positions of vertices come from: of attributes, or a vertex program makes them of anything.
+enum class Positions : std::uint8_t { attribute, computed };
 
 struct Resources {
     std::vector<Buffer> buffers;
@@ -207,7 +215,7 @@ struct Resources {
     void find_runs();
     /// Throws sim::InputError naming `where` when an index, offset or length is out of range, when an index value of
     /// an index buffer is >= vertex_count (the restart index aside), or when runs are not those of the indices.
-    void validate(const std::string& where) const;
+    void validate(const std::string& where, Positions positions = Positions::attribute) const;
 };
 
 /// From where, and onto how many pixels, the scene is drawn.

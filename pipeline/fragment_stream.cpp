@@ -24,7 +24,7 @@ std::uint64_t FragmentStream::bytes() const {
     std::uint64_t outputs = held(colours);
     for (const auto& output : more_outputs) outputs += held(output);
     return held(draws) + held(primitives) + held(triangles) + held(quads) + held(depths) + outputs +
-           held(given_colours) + held(given_normals) + held(texture_lines);
+           held(given_colours) + held(given_normals) + held(given_varyings) + held(texture_lines);
 }
 
 } // namespace pipeline

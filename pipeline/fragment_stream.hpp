@@ -89,7 +89,9 @@ struct FragmentStream {
     std::vector<std::vector<std::array<glm::vec4, 4>>> more_outputs; ///< of a shader with several: from the second on
     /// What the shader of the pass is given, where it has one of its own; see ShaderInput.
     SharedVector<std::array<glm::vec4, 4>> given_colours, given_normals;
-    SharedVector<std::uint32_t> texture_lines; ///< 64-byte line of the quad's texture fetch, ~0 = no fetch
+    SharedVector<std::array<glm::vec4, 4>> given_varyings; ///< `varyings` of each quad
+    std::uint32_t varyings = 0;                            ///< with the one that ShaderInput::varyings begins with
+    SharedVector<std::uint32_t> texture_lines;             ///< 64-byte line of the quad's texture fetch, ~0 = no fetch
 
     std::uint64_t groups = 0;              ///< quads of pixels; as many as `quads` with one sample
     std::uint64_t fragments = 0;           ///< covered pixels over all quads, or samples

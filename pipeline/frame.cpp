@@ -1,5 +1,9 @@
 #include "pipeline/frame.hpp"
 
+#include "sim/check.hpp"
+
+#include <fmt/format.h>
+
 namespace pipeline {
 
 // A pass that shades no colour wants colours, normals and textures only as far as an alpha test may read them.
@@ -21,6 +25,17 @@ Needs Frame::needs_of(const Pass& pass) const {
     own.textures &= coloured;
     own.texcoords &= coloured;
     return own;
+}
+
+void Frame::check_targets() const {
+    for (const Pass& pass : passes) {
+        if (!pass.writes_targets()) continue;
+        for (const SurfaceId target : pass.targets)
+            if (target != no_surface && surfaces[target].compressed())
+                throw sim::InputError(fmt::format("pass '{}': surface '{}' is of format {}, which is read only",
+                                                  pass.name, surfaces[target].name,
+                                                  info_of(surfaces[target].format).name));
+    }
 }
 
 } // namespace pipeline

@@ -61,6 +61,7 @@ struct Pass {
     SurfaceId depth = no_surface;         ///< tested and written as the states say, with its stencil
     SurfaceId kbuffer = no_surface;       ///< fragments go through its modify program
     bool both_faces = false;              ///< draws triangles that face away, too
+    bool cold = false;                    ///< texture and vertex caches are empty when it begins
     /// Attributes that the vertex shader reads beside what shading needs: bits as in mask_of(Semantic).
     std::uint32_t attributes = 0;
 
@@ -126,6 +127,7 @@ struct Frame {
     std::vector<View> other_views;     ///< of passes that see the scene from elsewhere
     std::vector<SurfaceInfo> surfaces; ///< that passes write
     SurfaceId output = no_surface;     ///< a colour surface that the frame is for; no_surface: the first of the passes
+    bool output_is_encoded = false;    ///< its numbers are sRGB codes over 255, as screens take them, and not linear
     /// Index into `draws` of the triangle that covers the screen in screen passes.
     std::optional<std::uint32_t> screen_draw;
     Submission submission = Submission::buffers;
@@ -160,6 +162,8 @@ struct Frame {
     }
     /// `needs` without what this pass does not read.
     Needs needs_of(const Pass& pass) const;
+    /// Throws the sim::InputError that names a surface which cannot be written and the pass that would.
+    void check_targets() const;
 
   private:
     SurfaceId of_eye(SurfaceId surface) const {

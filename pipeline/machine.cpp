@@ -35,6 +35,7 @@ Machine::Machine(const GpuParams& gpu, const Frame& frame, std::span<const Fragm
     const auto draw_passes =
         std::count_if(frame.passes.begin(), frame.passes.end(), [](const Pass& pass) { return pass.rasterizes(); });
     CHECK(static_cast<std::size_t>(draw_passes) == streams.size());
+    frame.check_targets();
     if (frame.program != nullptr) {
         if (const std::string reason = design.refuses(*frame.program); !reason.empty())
             throw sim::InputError(
@@ -261,6 +262,10 @@ void Machine::draw(const Pass& pass, const FragmentStream& unshaded) {
     FragmentStream shaded;
     const FragmentStream& stream = shade_pass(pass, unshaded, units_->surfaces, shaded);
     bind(pass, stream);
+    if (pass.cold) {
+        units_->front.drop_cached();
+        for (FragmentPipeline& pipe : units_->pipes) pipe.drop_surface(0, ~std::uint64_t{0});
+    }
     PassContext& context = units_->pass;
     if (!pass.runs_program()) {
         context.end = FragmentEnd::depth_colour;

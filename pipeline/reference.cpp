@@ -225,6 +225,7 @@ class Reference {
           delay_(delay),
           threads_(threads),
           surfaces_(frame.surfaces, 0, fp16_overflow) {
+        frame.check_targets();
         image_.fp16_overflow = fp16_overflow;
         image_.depth_complexity.resize(frame_.view_of_kbuffer().places());
         for (const Pass& pass : frame.passes) {

@@ -11,6 +11,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 
 namespace pipeline {
 
@@ -29,6 +30,7 @@ struct ShaderShape {
     std::uint32_t registers = 4;            ///< 128-bit registers per fragment; they limit the quads in flight
     std::optional<FragmentColour> colour{}; ///< of the material, that it starts from; draw passes only
     bool normal = false;                    ///< it reads the surface's normal; draw passes only
+    bool sets_depth = false;
 };
 
 /// A quad. Pixel i is (x + i % 2, y + i / 2).
@@ -40,6 +42,9 @@ struct ShaderInput {
     Lanes depth{};              ///< window depth in [0,1]; 0 in screen passes
     QuadTexels colour{};        ///< linear RGBA as asked for by the shape, else 0
     QuadTexels normal{};        ///< eye space, of unit length or 0; w is 0
+    /// Of draws with a vertex program, else empty. The first is {w of clip space, place in the point from the left,
+    /// from the top, 0}; the others are the program's.
+    std::span<const QuadTexels> varyings{};
 };
 
 /// Where the pixels of a quad are, those outside of the mask, too.
@@ -57,6 +62,7 @@ struct QuadPlaces {
 struct ShaderOutput {
     std::array<QuadTexels, most_targets_of_pass> colours{};
     unsigned alive = 0; ///< the pixels that were not discarded
+    Lanes depth{};      ///< in [0,1], of all samples; counts where the shape says so, and is the input's on entry
 };
 
 class Shader {

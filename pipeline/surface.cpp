@@ -24,14 +24,9 @@ std::vector<std::byte> cleared_texel(const SurfaceInfo& info) {
     return texel;
 }
 
-} // namespace
+SurfaceLayout layout_of(const PageGrid& grid) { return {grid.width, grid.rows, 1}; }
 
-std::uint64_t SurfaceInfo::nominal_bytes() const {
-    std::uint64_t texels = 0;
-    for (std::uint32_t level = 0; level < levels; ++level)
-        texels += std::uint64_t{width_of(level)} * height_of(level) * planes;
-    return texels * texel_bytes();
-}
+} // namespace
 
 SurfaceStore::SurfaceStore(std::span<const SurfaceInfo> surfaces, std::uint64_t first_address,
                            Fp16Overflow fp16_overflow)
@@ -41,29 +36,29 @@ SurfaceStore::SurfaceStore(std::span<const SurfaceInfo> surfaces, std::uint64_t 
         Surface& surface = surfaces_.emplace_back();
         surface.info = info;
         surface.texel_bytes = info.texel_bytes();
+        surface.tile_bytes = info.tile_bytes();
         surface.cleared = cleared_texel(info);
         for (std::uint32_t i = 0; i < info.levels; ++i) {
             Level& level = surface.levels.emplace_back();
-            level.width = info.width_of(i);
-            level.rows = info.planes * plane_rows(info.height_of(i), info.planes);
-            level.pages_in_row = (level.width + page_size - 1) / page_size;
-            level.pages.resize(std::size_t{level.pages_in_row} * ((level.rows + page_size - 1) / page_size));
+            level.grid = PageGrid(info, i);
+            level.pages.resize(level.grid.pages());
+            if (info.contents != nullptr) level.pages = info.contents->levels[i];
+            CHECK(level.pages.size() == level.grid.pages());
             level.address = (end_address_ + alignment - 1) / alignment * alignment;
-            const SurfaceLayout layout{level.width, level.rows, 1};
-            end_address_ = level.address + std::uint64_t{layout.blocks()} * 4 * surface.texel_bytes;
+            level.bytes = info.shape == SurfaceShape::row
+                              ? std::uint64_t{level.grid.width} * surface.texel_bytes
+                              : std::uint64_t{layout_of(level.grid).tiles()} * surface.tile_bytes;
+            end_address_ = level.address + level.bytes;
         }
     }
 }
 
-SurfaceStore::Page SurfaceStore::own_page(const Surface& surface, const std::byte* content) {
-    const std::size_t texels = std::size_t{page_size} * page_size;
-    Page page(new std::byte[texels * surface.texel_bytes]);
-    if (content != nullptr) {
-        std::memcpy(page.get(), content, texels * surface.texel_bytes);
-        return page;
-    }
-    for (std::size_t i = 0; i < texels; ++i)
-        std::memcpy(page.get() + i * surface.texel_bytes, surface.cleared.data(), surface.texel_bytes);
+SurfacePage SurfaceStore::own_page(const Surface& surface, const std::byte* content) {
+    CHECK(!surface.info.compressed());
+    if (content == nullptr) return make_page(surface.cleared.data(), surface.texel_bytes);
+    const std::size_t bytes = std::size_t{PageGrid::page_texels} * surface.texel_bytes;
+    SurfacePage page(new std::byte[bytes]);
+    std::memcpy(page.get(), content, bytes);
     return page;
 }
 
@@ -71,7 +66,7 @@ void SurfaceStore::clear(SurfaceId id) {
     Surface& surface = surfaces_[id];
     surface.high_water = std::max(surface.high_water, allocated(surface));
     for (Level& level : surface.levels)
-        for (Page& page : level.pages) page.reset();
+        for (SurfacePage& page : level.pages) page.reset();
 }
 
 void SurfaceStore::share(const SurfaceStore& other, SurfaceId id) {
@@ -92,11 +87,12 @@ SurfaceStore SurfaceStore::shown() const {
 // Pages at the edge reach beyond the surface; what lies there is never written.
 std::uint64_t SurfaceStore::digest(SurfaceId id) const {
     const Surface& surface = surfaces_[id];
-    const std::size_t page_bytes = std::size_t{page_size} * page_size * surface.texel_bytes;
-    const std::uint64_t cleared = XXH3_64bits(own_page(surface, nullptr).get(), page_bytes);
+    const std::size_t page_bytes = std::size_t{PageGrid::page_texels} * surface.texel_bytes;
+    const SurfacePage blank = make_page(surface.cleared.data(), surface.texel_bytes);
+    const std::uint64_t cleared = XXH3_64bits(blank.get(), page_bytes);
     std::vector<std::uint64_t> pages;
     for (const Level& level : surface.levels)
-        for (const Page& page : level.pages)
+        for (const SurfacePage& page : level.pages)
             pages.push_back(page == nullptr ? cleared : XXH3_64bits(page.get(), page_bytes));
     return XXH3_64bits(pages.data(), pages.size() * sizeof(std::uint64_t));
 }
@@ -116,7 +112,11 @@ bool SurfaceStore::same(const SurfaceStore& other, SurfaceId surface, SurfacePla
 std::uint64_t SurfaceStore::address(SurfaceId id, SurfacePlace place, std::uint32_t target) const {
     const Surface& surface = surfaces_[id];
     const Level& level = surface.levels[place.level];
-    const std::uint64_t block = SurfaceLayout{level.width, level.rows, 1}.block_of(place.x, place.row);
+    if (level.grid.row) return level.address + std::uint64_t{place.x} * surface.texel_bytes;
+    const SurfaceLayout layout = layout_of(level.grid);
+    if (surface.info.compressed())
+        return level.address + std::uint64_t{layout.tile_of(place.x, place.row)} * surface.tile_bytes;
+    const std::uint64_t block = layout.block_of(place.x, place.row);
     const std::uint64_t pixel = place.row % 2 * 2 + place.x % 2;
     const std::uint64_t base = level.address + block * 4 * surface.texel_bytes;
     if (surface.info.program == nullptr) return base + pixel * surface.texel_bytes;
@@ -124,10 +124,8 @@ std::uint64_t SurfaceStore::address(SurfaceId id, SurfacePlace place, std::uint3
 }
 
 std::uint64_t SurfaceStore::end_of(SurfaceId id) const {
-    const Surface& surface = surfaces_[id];
-    const Level& last = surface.levels.back();
-    const std::uint64_t blocks = SurfaceLayout{last.width, last.rows, 1}.blocks();
-    return last.address + blocks * 4 * surface.texel_bytes;
+    const Level& last = surfaces_[id].levels.back();
+    return last.address + last.bytes;
 }
 
 std::uint64_t SurfaceStore::allocated(const Surface& surface) {
@@ -135,7 +133,8 @@ std::uint64_t SurfaceStore::allocated(const Surface& surface) {
     for (const Level& level : surface.levels)
         pages += static_cast<std::uint64_t>(
             std::count_if(level.pages.begin(), level.pages.end(), [](const auto& page) { return page != nullptr; }));
-    return pages * page_size * page_size * surface.texel_bytes;
+    constexpr std::uint64_t tiles_of_page = PageGrid::page_texels / 16;
+    return pages * tiles_of_page * surface.tile_bytes;
 }
 
 SurfaceMemory SurfaceStore::memory(SurfaceId id) const {

@@ -2,21 +2,17 @@
 //
 // Modelled: formats; planes (samples, layers, cube faces, slices of a volume, slots), mip levels; the value of a clear;
 // where each texel lies in GPU memory, the same for ROPs, texture units, kernels and DRAM. A page of 16x16 pixels is
-// allocated when something first writes into it: a surface that is cleared and never drawn to costs nothing.
-// Not modelled: compression.
+// allocated when something first writes into it: a surface that is cleared and never drawn to costs nothing. Textures
+// in block-compressed formats have the addresses of their blocks; their texels are held decoded and cannot be written.
+// Not modelled: compression of targets.
 #pragma once
 
-#include "pipeline/output/kbuffer.hpp"
 #include "pipeline/output/surface_layout.hpp"
-#include "pipeline/surface_format.hpp"
+#include "pipeline/surface_info.hpp"
 
-#include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <span>
-#include <string>
 #include <vector>
 
 namespace pipeline {
@@ -26,33 +22,6 @@ using SurfaceId = std::uint32_t;
 inline constexpr SurfaceId no_surface = ~SurfaceId{0};
 
 inline constexpr std::uint32_t target_pixel_bytes = 16; ///< of a pixel of a k-buffer's render target
-
-/// How reports make a picture of a channel of a surface.
-struct SurfacePicture {
-    std::string name; ///< a file's, without its ending
-    std::string title;
-    std::uint32_t channel = 0;
-    float low = 0.0F, high = 1.0F; ///< what is shown as black and as white
-};
-
-struct SurfaceInfo {
-    std::string name;
-    SurfaceFormat format = SurfaceFormat::rgba8; ///< of a texel; a k-buffer's is its program's pixel
-    std::uint32_t width = 1, height = 1;         ///< of one plane of level 0
-    std::uint32_t planes = 1;
-    std::uint32_t levels = 1;
-    /// What a clear stores, in the format's bytes; a k-buffer takes its program's.
-    std::array<std::byte, largest_texel> cleared{};
-    std::shared_ptr<const ModifyProgram> program{}; ///< makes it a k-buffer
-    bool kept = false;                              ///< lives on in the next frame
-    std::vector<SurfacePicture> shown{};
-
-    std::uint32_t texel_bytes() const { return program ? program->bytes_per_pixel() : bytes_of(format); }
-    std::uint32_t width_of(std::uint32_t level) const { return std::max(1U, width >> level); }
-    std::uint32_t height_of(std::uint32_t level) const { return std::max(1U, height >> level); }
-    /// Of all planes and levels.
-    std::uint64_t nominal_bytes() const;
-};
 
 /// A texel of a surface. With several planes, `row` counts through them: plane_rows() rows from one to the next.
 struct SurfacePlace {
@@ -71,10 +40,11 @@ struct SurfaceMemory {
 /// until one of them writes.
 class SurfaceStore {
   public:
-    static constexpr std::uint32_t page_size = 16; ///< pixels along a side
+    static constexpr std::uint32_t page_size = PageGrid::page_size; ///< pixels along a side
 
     SurfaceStore() = default;
-    /// All surfaces hold their cleared value. Addresses begin at `first_address`, each level at a multiple of 256.
+    /// Surfaces hold their contents, or their cleared value. Addresses begin at `first_address`, each level at a
+    /// multiple of 256.
     explicit SurfaceStore(std::span<const SurfaceInfo> surfaces, std::uint64_t first_address = 0,
                           Fp16Overflow fp16_overflow = Fp16Overflow::saturate);
 
@@ -86,18 +56,18 @@ class SurfaceStore {
     /// The texel to be written; allocates its page.
     std::byte* written(SurfaceId surface, SurfacePlace place) {
         const Level& level = surfaces_[surface].levels[place.level];
-        const Location at = location_of(level, place, surfaces_[surface].texel_bytes);
-        Page& page = surfaces_[surface].levels[place.level].pages[at.page];
+        const PageGrid::Place at = level.grid.find(place.x, place.row);
+        SurfacePage& page = surfaces_[surface].levels[place.level].pages[at.page];
         if (page.use_count() != 1) page = own_page(surfaces_[surface], page.get());
-        return page.get() + at.offset;
+        return page.get() + std::size_t{at.texel} * surfaces_[surface].texel_bytes;
     }
     /// The texel as it is, a cleared one where nothing was written.
     const std::byte* read(SurfaceId surface, SurfacePlace place) const {
         const Surface& of = surfaces_[surface];
         const Level& level = of.levels[place.level];
-        const Location at = location_of(level, place, of.texel_bytes);
+        const PageGrid::Place at = level.grid.find(place.x, place.row);
         const std::byte* page = level.pages[at.page].get();
-        return page != nullptr ? page + at.offset : of.cleared.data();
+        return page != nullptr ? page + std::size_t{at.texel} * of.texel_bytes : of.cleared.data();
     }
 
     /// A pixel of a k-buffer: its program's floats.
@@ -123,12 +93,13 @@ class SurfaceStore {
 
     /// Rows of all planes of a level.
     std::uint32_t rows(SurfaceId surface, std::uint32_t level = 0) const {
-        return surfaces_[surface].levels[level].rows;
+        return surfaces_[surface].levels[level].grid.rows;
     }
     /// Texels of level 0 that lie in memory: those of all rows.
     std::size_t places(SurfaceId surface) const { return std::size_t{info(surface).width} * rows(surface); }
     /// Byte address of a texel in GPU memory: tiles of 4x4 pixels in row order, 2x2 blocks within. A block of a
-    /// k-buffer holds one render target (16 bytes a pixel) after the other.
+    /// k-buffer holds one render target (16 bytes a pixel) after the other; texels of a compressed tile have one
+    /// address.
     std::uint64_t address(SurfaceId surface, SurfacePlace place, std::uint32_t target = 0) const;
     /// Behind the last byte of all its planes and levels.
     std::uint64_t end_of(SurfaceId surface) const;
@@ -138,30 +109,19 @@ class SurfaceStore {
     SurfaceMemory memory(SurfaceId surface) const;
 
   private:
-    using Page = std::shared_ptr<std::byte[]>;
-
     struct Level {
-        std::uint32_t width = 0, rows = 0;
-        std::uint32_t pages_in_row = 0;
-        std::uint64_t address = 0;
-        std::vector<Page> pages; ///< cleared ones are null
+        PageGrid grid;
+        std::uint64_t address = 0, bytes = 0; ///< of all its tiles
+        std::vector<SurfacePage> pages;       ///< cleared ones are null
     };
     struct Surface {
         SurfaceInfo info;
-        std::uint32_t texel_bytes = 0;
+        std::uint32_t texel_bytes = 0, tile_bytes = 0;
         std::vector<std::byte> cleared; ///< one texel
         std::vector<Level> levels;
         std::uint64_t high_water = 0;
     };
-    struct Location {
-        std::size_t page = 0, offset = 0;
-    };
-
-    static Location location_of(const Level& level, SurfacePlace place, std::uint32_t texel_bytes) {
-        const std::size_t page = std::size_t{place.row / page_size} * level.pages_in_row + place.x / page_size;
-        return {page, std::size_t{place.row % page_size * page_size + place.x % page_size} * texel_bytes};
-    }
-    static Page own_page(const Surface& surface, const std::byte* content);
+    static SurfacePage own_page(const Surface& surface, const std::byte* content);
     static std::uint64_t allocated(const Surface& surface);
 
     std::vector<Surface> surfaces_;

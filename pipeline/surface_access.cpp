@@ -38,11 +38,8 @@ glm::vec4 SurfaceAccess::texel(SurfaceId surface, std::int32_t x, std::int32_t y
     const auto width = static_cast<std::int32_t>(info.width_of(level));
     const auto height = static_cast<std::int32_t>(info.height_of(level));
     if (x < 0 || y < 0 || x >= width || y >= height) return outside;
-    const std::uint32_t row =
-        plane * plane_rows(static_cast<std::uint32_t>(height), info.planes) + static_cast<std::uint32_t>(y);
-    const SurfacePlace place{static_cast<std::uint32_t>(x), row, level};
-    if (work_ != nullptr) work_->touch(surfaces_.address(surface, place));
-    return unpack_texel(info.format, surfaces_.read(surface, place));
+    const std::uint32_t row = plane * info.rows_between_planes(level) + static_cast<std::uint32_t>(y);
+    return unpack_texel(info.format, bytes(surface, {static_cast<std::uint32_t>(x), row, level}));
 }
 
 QuadTexels SurfaceAccess::fetch(std::uint32_t slot, const LaneIndices& x, const LaneIndices& y, unsigned pixels,

@@ -1,8 +1,9 @@
 // How shaders read surfaces that earlier passes finished. With a QuadWork attached every read records the lines that it
 // touches, so that value and cost come from the same code.
 //
-// Modelled: single texels, nearest, bilinear and trilinear filters, wrap modes and borders, pixels of k-buffers.
-// Not modelled: anisotropy, depth comparison, texel offsets. Source: OpenGL 4.5 core, sections 8.14 and 8.15.
+// Modelled: single texels, nearest, bilinear and trilinear filters, wrap modes and borders, pixels of k-buffers. What
+// recorded programs want of textures beside these is in functional/quad_sampler.hpp. Source: OpenGL 4.5 core,
+// sections 8.14 and 8.15.
 #pragma once
 
 #include "pipeline/functional/texture_addressing.hpp"
@@ -38,6 +39,11 @@ class SurfaceAccess {
         if (work_ != nullptr) work_->issue(instructions, pixels);
     }
 
+    /// Begins a read of the surface by the quad, to which the texels belong that read_texel() gives next.
+    void begin_read(std::uint32_t slot) { begin_fetch(slots_[slot]); }
+    /// The bytes of a texel inside of the surface.
+    const std::byte* read_texel(std::uint32_t slot, const SurfacePlace& place) { return bytes(slots_[slot], place); }
+
     /// The texels at these places, for the pixels in the mask; 0 for others and outside of the surface.
     QuadTexels fetch(std::uint32_t slot, const LaneIndices& x, const LaneIndices& y, unsigned pixels,
                      std::uint32_t plane = 0, std::uint32_t level = 0);
@@ -62,6 +68,10 @@ class SurfaceAccess {
                       std::uint32_t plane, std::uint32_t level);
     glm::vec4 texel(SurfaceId surface, std::int32_t x, std::int32_t y, std::uint32_t plane, std::uint32_t level,
                     const glm::vec4& outside);
+    const std::byte* bytes(SurfaceId surface, const SurfacePlace& place) {
+        if (work_ != nullptr) work_->touch(surfaces_.address(surface, place));
+        return surfaces_.read(surface, place);
+    }
     void begin_fetch(SurfaceId surface) {
         if (work_ != nullptr) work_->begin_fetch(surfaces_.info(surface).texel_bytes());
     }

@@ -1,6 +1,7 @@
 #include "reports/comparison.hpp"
 
 #include "models/kbuffers/design_support.hpp"
+#include "pipeline/functional/number_formats.hpp"
 #include "pipeline/functional/parallel.hpp"
 #include "pipeline/functional/sample_pattern.hpp"
 #include "pipeline/machine.hpp"
@@ -13,6 +14,7 @@
 #include "traces/camera.hpp"
 #include "traces/trace.hpp"
 
+#include <algorithm>
 #include <array>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -24,10 +26,37 @@ namespace reports {
 
 namespace {
 
+// Draws are those of the frame, with what it clears and copies by drawing.
+SceneFacts facts_of_recording(const traces::Trace& trace, const pipeline::Frame& frame) {
+    SceneFacts facts;
+    facts.name = trace.scene.name;
+    facts.hash = trace.scene.hash;
+    facts.camera = facts.view = "as recorded";
+    for (const pipeline::Geometry& geometry : frame.resources->geometries) {
+        facts.triangles += geometry.triangle_count();
+        facts.vertices += geometry.vertex_count;
+    }
+    for (const pipeline::Pass& pass : frame.passes) {
+        facts.draws += pass.draws.size();
+        for (const std::uint32_t draw : pass.draws)
+            facts.triangles_drawn +=
+                std::uint64_t{frame.resources->geometries[frame.draws[draw].geometry].triangle_count()} *
+                frame.draws[draw].instances.size();
+    }
+    facts.textures = static_cast<std::uint64_t>(
+        std::count_if(trace.recording->surfaces.begin(), trace.recording->surfaces.end(),
+                      [](const traces::RecordedSurface& surface) { return !surface.levels.front().empty(); }));
+    facts.notes = frame.notes;
+    for (const traces::NotRecorded& call : trace.recording->not_recorded)
+        facts.notes.push_back(fmt::format("not recorded: {}: {}", call.call, sim::counted(call.times, "call")));
+    return facts;
+}
+
 void read_trace(const ComparisonRequest& request, ComparisonInput& input) {
     const traces::Trace trace = traces::read_trace(request.scene);
-    input.frame = std::make_shared<const pipeline::Frame>(traces::frame_of(trace));
-    input.scene = facts_of(trace.scene, trace.frame.camera, *input.frame, trace.frame.notes);
+    input.frame = std::make_shared<const pipeline::Frame>(traces::frame_of(trace, request.replayed));
+    input.scene = trace.recording ? facts_of_recording(trace, *input.frame)
+                                  : facts_of(trace.scene, trace.frame.camera, *input.frame, trace.frame.notes);
     input.scene.captured = SceneFacts::Captured{trace.metadata.scene, trace.metadata.scene_hash};
 }
 
@@ -67,8 +96,12 @@ void check_memory(const ComparisonInput& input, const ComparisonRequest& request
                         bytes_text(needed), limit.whose, bytes_text(limit.bytes)));
 }
 
-std::vector<float> picture_of(const pipeline::Frame& frame, const std::vector<float>& colour) {
-    return colour.size() == frame.view.places() * 4 ? pipeline::mean_of_samples(frame.view, colour, 4) : colour;
+// In linear light.
+std::vector<float> picture_of(const pipeline::Frame& frame, std::vector<float> colour) {
+    if (colour.size() == frame.view.places() * 4) colour = pipeline::mean_of_samples(frame.view, colour, 4);
+    for (std::size_t i = 0; frame.output_is_encoded && i < colour.size(); ++i)
+        if (i % 4 != 3) colour[i] = pipeline::srgb_decode(colour[i]);
+    return colour;
 }
 
 // What is shown of several samples is the first one's.
@@ -244,7 +277,7 @@ Comparison compare(ComparisonInput input, const Supervision& supervision) {
     comparison.pixels.resize(input.designs.size());
     pipeline::ReferenceImage& reference = input.reference;
     comparison.reference.composite =
-        reference.picture.empty() ? picture_of(*input.frame, reference.colour) : std::move(reference.picture);
+        picture_of(*input.frame, reference.picture.empty() ? reference.colour : std::move(reference.picture));
     const std::vector<std::size_t> run_as = same_machines(input);
     pipeline::parallel_for(input.threads, input.designs.size(), [&](std::size_t i) {
         if (run_as[i] == i) comparison.runs[i] = run_design(input, input.designs[i], supervision);

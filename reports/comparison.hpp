@@ -8,6 +8,7 @@
 #include "reports/design_variant.hpp"
 #include "sim/observer.hpp"
 #include "traces/scene.hpp"
+#include "traces/trace.hpp"
 #include "traces/workloads.hpp"
 
 #include <atomic>
@@ -29,6 +30,7 @@ struct ComparisonRequest {
     std::vector<std::string> workload_settings; ///< "key=value"
     /// The scene is a draw trace, and its frame is drawn: all from camera to workload_settings are its own.
     bool replay = false;
+    traces::ReplayOptions replayed; ///< what of a recording
     std::string gpu = "neutral";
     std::vector<std::string> gpu_settings; ///< "section.key=value"; also parameters of designs
     std::vector<std::string> designs;      ///< at least one, each a DesignVariant, no duplicates

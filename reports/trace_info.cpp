@@ -1,6 +1,7 @@
 #include "reports/trace_info.hpp"
 
 #include "reports/numbers.hpp"
+#include "reports/recording_info.hpp"
 #include "traces/trace.hpp"
 #include "traces/trace_text.hpp"
 
@@ -66,20 +67,26 @@ std::string joined(const ordered_json& names) {
 
 } // namespace
 
-ordered_json trace_info(const std::filesystem::path& path) {
-    const traces::Trace trace = traces::read_trace(path);
-    const pipeline::Frame frame = traces::frame_of(trace);
-    const pipeline::Resources& resources = *trace.scene.resources;
-    std::vector<std::string> passes;
-    for (const pipeline::Pass& pass : frame.passes) passes.push_back(pass.name);
+namespace {
+
+/// What every trace has.
+ordered_json facts_of_file(const std::filesystem::path& path, const traces::Trace& trace) {
     return {{"file", path.string()},
             {"bytes", std::filesystem::file_size(path)},
             {"hash", trace.scene.hash},
             {"name", trace.metadata.name},
             {"writer", trace.metadata.writer},
             {"licence", trace.metadata.licence},
-            {"captured", {{"name", trace.metadata.scene}, {"hash", trace.metadata.scene_hash}}},
-            {"workload", trace.frame.workload},
+            {trace.recording ? "recorded" : "captured",
+             {{"name", trace.metadata.scene}, {"hash", trace.metadata.scene_hash}}}};
+}
+
+ordered_json facts_of_frame(const traces::Trace& trace) {
+    const pipeline::Frame frame = traces::frame_of(trace);
+    const pipeline::Resources& resources = *trace.scene.resources;
+    std::vector<std::string> passes;
+    for (const pipeline::Pass& pass : frame.passes) passes.push_back(pass.name);
+    return {{"workload", trace.frame.workload},
             {"options", ordered_json::parse(trace.frame.options, nullptr, false)},
             {"camera", trace.frame.camera},
             {"width", trace.frame.view.width},
@@ -94,41 +101,64 @@ ordered_json trace_info(const std::filesystem::path& path) {
             {"geometries", resources.geometries.size()},
             {"textures", resources.textures.size()},
             {"materials", resources.materials.size()},
-            {"lights", trace.scene.lights.size()},
-            {"vertex_formats", vertex_formats(resources)},
-            {"index_formats", index_formats(resources)},
-            {"chunks", chunks_of(path)}};
+            {"lights", trace.scene.lights.size()}};
 }
 
-std::string trace_summary(const ordered_json& info) {
-    return fmt::format("{}: {} of {}, {} at {} x {}, {}\n", info["file"].get<std::string>(),
-                       counted(info["draws"].get<std::uint64_t>(), "draw"),
-                       counted(info["triangles"].get<std::uint64_t>(), "triangle"), info["workload"].get<std::string>(),
-                       info["width"].get<int>(), info["height"].get<int>(), bytes_text(info["bytes"].get<double>()));
-}
-
-std::string trace_info_text(const ordered_json& info, TerminalStyle style) {
-    const auto text = [&](const char* key) { return info[key].get<std::string>(); };
+std::string captured_text(const ordered_json& info) {
     const auto number = [&](const char* key, const char* noun) {
         return counted(info[key].get<std::uint64_t>(), noun);
     };
-    std::string lines = trace_summary(info);
-    lines += fmt::format("name: {}\nwriter: {}\nlicence: {}\nhash: {}\n", text("name"), text("writer"),
-                         text("licence").empty() ? "not stated" : text("licence"), text("hash"));
-    lines += fmt::format("captured from: {} ({})\n", info["captured"]["name"].get<std::string>(),
-                         info["captured"]["hash"].get<std::string>());
-    lines += fmt::format("options: {}; camera {}; {} to a pixel\n", info["options"].dump(), text("camera"),
-                         number("samples", "sample"));
+    std::string lines = fmt::format("options: {}; camera {}; {} to a pixel\n", info["options"].dump(),
+                                    info["camera"].get<std::string>(), number("samples", "sample"));
     lines += fmt::format("passes: {}\n", joined(info["passes"]));
     lines += fmt::format("surfaces: {}\n", joined(info["surfaces"], [](const ordered_json& one) {
                              return fmt::format("{} {} {} x {}", one["name"].get<std::string>(),
                                                 one["format"].get<std::string>(), one["width"].get<int>(),
                                                 one["height"].get<int>());
                          }));
-    lines += fmt::format("resources: {}, {}, {}, {}, {}, {}\n", number("buffers", "buffer"),
-                         info["geometries"] == 1 ? "1 geometry" : info["geometries"].dump() + " geometries",
-                         info["vertices"] == 1 ? "1 vertex" : with_commas(info["vertices"]) + " vertices",
-                         number("textures", "texture"), number("materials", "material"), number("lights", "light"));
+    return lines + fmt::format("resources: {}, {}, {}, {}, {}, {}\n", number("buffers", "buffer"),
+                               info["geometries"] == 1 ? "1 geometry" : info["geometries"].dump() + " geometries",
+                               info["vertices"] == 1 ? "1 vertex" : with_commas(info["vertices"]) + " vertices",
+                               number("textures", "texture"), number("materials", "material"),
+                               number("lights", "light"));
+}
+
+std::string captured_summary(const ordered_json& info) {
+    return fmt::format("{} of {}, {} at {} x {}", counted(info["draws"].get<std::uint64_t>(), "draw"),
+                       counted(info["triangles"].get<std::uint64_t>(), "triangle"), info["workload"].get<std::string>(),
+                       info["width"].get<int>(), info["height"].get<int>());
+}
+
+} // namespace
+
+ordered_json trace_info(const std::filesystem::path& path) {
+    const traces::Trace trace = traces::read_trace(path);
+    ordered_json info = facts_of_file(path, trace);
+    info.update(trace.recording ? recording_info(*trace.recording) : facts_of_frame(trace));
+    const pipeline::Resources& resources = trace.recording ? *trace.recording->resources : *trace.scene.resources;
+    info["vertex_formats"] = vertex_formats(resources);
+    info["index_formats"] = index_formats(resources);
+    info["chunks"] = chunks_of(path);
+    return info;
+}
+
+std::string trace_summary(const ordered_json& info) {
+    return fmt::format("{}: {}, {}\n", info["file"].get<std::string>(),
+                       info.contains("recorded") ? recording_summary(info) : captured_summary(info),
+                       bytes_text(info["bytes"].get<double>()));
+}
+
+std::string trace_info_text(const ordered_json& info, TerminalStyle style) {
+    const auto text = [&](const char* key) { return info[key].get<std::string>(); };
+    const bool recorded = info.contains("recorded");
+    std::string lines = trace_summary(info);
+    lines += fmt::format("name: {}\nwriter: {}\nlicence: {}\nhash: {}\n", text("name"), text("writer"),
+                         text("licence").empty() ? "not stated" : text("licence"), text("hash"));
+    const char* const from = recorded ? "recorded" : "captured";
+    const auto hash = info[from]["hash"].get<std::string>();
+    lines += fmt::format("{} from: {}{}\n", from, info[from]["name"].get<std::string>(),
+                         hash.empty() ? "" : " (" + hash + ")");
+    lines += recorded ? recording_info_text(info) : captured_text(info);
     lines += fmt::format("vertex formats: {}; indices: {}\n\n", joined(info["vertex_formats"]),
                          joined(info["index_formats"]));
     std::vector<std::vector<std::string>> rows;

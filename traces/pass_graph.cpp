@@ -39,6 +39,10 @@ class PassGraph::Culling {
 
     void visit(Node node) {
         const Pass& pass = node.pass;
+        if (node.mark) {
+            live_.insert(node.reads.begin(), node.reads.end());
+            return;
+        }
         if (pass.kind == PassKind::draw && pass.draws.empty()) {
             note(fmt::format("pass {}", pass.name), "it draws nothing");
             return;
@@ -156,6 +160,7 @@ void PassGraph::add_shaded(ShadedPass added) {
     pass.shader = std::move(added.shader);
     pass.draws = std::move(added.draws);
     pass.both_faces = added.both_faces;
+    pass.cold = added.cold;
     pass.states = std::move(added.states);
     pass.state_of_draw = std::move(added.state_of_draw);
     CHECK(!pass.states.empty() && (pass.state_of_draw.empty() || pass.state_of_draw.size() == pass.draws.size()));
@@ -163,7 +168,8 @@ void PassGraph::add_shaded(ShadedPass added) {
         frame_.other_views.push_back(*added.view);
         pass.view = static_cast<std::uint32_t>(frame_.other_views.size());
     }
-    node.writes = added.targets;
+    for (const std::string& target : added.targets)
+        if (!target.empty()) node.writes.push_back(target);
     if (pass.writes_depth() || pass.tests_stencil()) node.writes.push_back(added.depth);
     if (!added.kbuffer.empty()) node.writes.push_back(added.kbuffer);
     node.reads = added.reads;
@@ -210,6 +216,12 @@ void PassGraph::use(pipeline::FragmentColour colour) { fragment_colour_ = colour
 
 void PassGraph::output(std::string surface) { outputs_.push_back(std::move(surface)); }
 
+void PassGraph::keep(std::string surface) {
+    Node& node = nodes_.emplace_back();
+    node.mark = true;
+    node.reads = {std::move(surface)};
+}
+
 void PassGraph::leave_out(std::string unit, std::string reason) {
     left_out_.push_back({std::move(unit), std::move(reason)});
 }
@@ -226,7 +238,7 @@ class PassGraph::Binding {
                 for (const std::string& name : nodes[i].writes)
                     frame.passes[i].clears.push_back(id_of(name, frame.view));
         for (std::size_t i = 0; i < nodes.size(); ++i)
-            for (const std::string& name : nodes[i].slots) frame.passes[i].reads.push_back(written(name, nodes[i]));
+            for (const std::string& name : nodes[i].slots) frame.passes[i].reads.push_back(to_be_read(name, nodes[i]));
     }
 
     pipeline::SurfaceId find(const std::string& name) const {
@@ -245,12 +257,14 @@ class PassGraph::Binding {
         if (contains(node.writes, node.kbuffer)) pass.kbuffer = id_of(node.kbuffer, view);
     }
 
-    pipeline::SurfaceId written(const std::string& name, const Node& node) const {
+    pipeline::SurfaceId to_be_read(const std::string& name, const Node& node) {
         const pipeline::SurfaceId surface = find(name);
-        if (surface == pipeline::no_surface)
+        if (surface != pipeline::no_surface) return surface;
+        const auto declared = declared_.find(name);
+        if (declared == declared_.end() || declared->second.info.contents == nullptr)
             throw sim::InputError(
                 fmt::format("pass {}: it reads the surface {}, which no pass writes", node.pass.name, name));
-        return surface;
+        return id_of(name, frame_.view);
     }
 
     // Each surface is as large as what the first pass that draws to it sees.

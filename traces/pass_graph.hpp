@@ -24,7 +24,7 @@ struct ShadedPass {
     std::string name;
     std::shared_ptr<const pipeline::Shader> shader;
     std::vector<std::string> reads;   ///< in the order in which the shader knows them
-    std::vector<std::string> targets; ///< one for each output of the shader; its last ones may go nowhere
+    std::vector<std::string> targets; ///< one for each output of the shader, "" and behind the last one: none
     bool screen = false;              ///< draws every pixel of the targets instead of `draws`
     bool timed = true;                ///< else it takes no time; passes over the screen only
     std::vector<std::uint32_t> draws;
@@ -33,6 +33,7 @@ struct ShadedPass {
     std::vector<pipeline::RasterState> states = std::vector<pipeline::RasterState>(1);
     std::vector<std::uint32_t> state_of_draw; ///< one for each draw; empty: all the first
     bool both_faces = false;
+    bool cold = false;                  ///< caches are empty when it begins
     std::optional<pipeline::View> view; ///< none: Frame::view
 };
 
@@ -71,6 +72,8 @@ class PassGraph {
     void use(pipeline::FragmentColour colour);
     /// This surface is what the frame is for.
     void output(std::string surface);
+    /// Somebody reads it as the passes before leave it: what made it stays.
+    void keep(std::string surface);
     /// Something the method could have had and does not use here.
     void leave_out(std::string unit, std::string reason);
 
@@ -82,6 +85,7 @@ class PassGraph {
     struct Node {
         pipeline::Pass pass;
         std::vector<std::string> reads, writes; ///< names of surfaces
+        bool mark = false;                      ///< no pass: what keep() asks for
         // The same, by what they are for.
         std::vector<std::string> slots, targets;
         std::string depth, kbuffer;

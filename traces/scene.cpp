@@ -17,6 +17,13 @@ namespace traces {
 
 namespace {
 
+Scene scene_of_trace(const std::string& path) {
+    Trace trace = read_trace(path);
+    if (trace.recording)
+        throw sim::InputError(fmt::format("{}: expected a scene, got frames that an application drew", path));
+    return std::move(trace.scene);
+}
+
 void check_draws(const Scene& scene) {
     for (const pipeline::Draw& draw : scene.draws) {
         CHECK(draw.geometry < scene.resources->geometries.size());
@@ -75,7 +82,7 @@ Scene load_scene(const std::string& spec) {
     }
     if (spec.starts_with("gen:")) return generate_scene(spec);
     if (is_tetrahedra_file(spec)) return import_tetrahedra(spec);
-    if (is_trace_file(spec)) return read_trace(spec).scene;
+    if (is_trace_file(spec)) return scene_of_trace(spec);
     const std::size_t hash = spec.rfind('#');
     std::error_code error; // a file whose own name has a '#' is that file
     if (hash == std::string::npos || std::filesystem::exists(spec, error)) return import_gltf(spec);

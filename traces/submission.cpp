@@ -1,6 +1,7 @@
 #include "traces/submission.hpp"
 
 #include "pipeline/functional/vertex_fetch.hpp"
+#include "pipeline/vertex_program.hpp"
 #include "sim/check.hpp"
 #include "traces/screen_draw.hpp"
 
@@ -45,18 +46,54 @@ void radix_sort(std::vector<SortedTriangle>& triangles) {
     }
 }
 
+/// Distances of centroids from the eye, of one instance of a draw. Where a program makes the positions, w of clip space
+/// is the distance of a perspective projection; of a parallel one, whose w is 1 everywhere, z is.
+class CentroidDistance {
+  public:
+    CentroidDistance(const Frame& frame, const Draw& draw, std::uint32_t instance)
+        : to_eye_(glm::dmat4(frame.view_of_kbuffer().view) * glm::dmat4(draw.instances[instance])) {
+        const Geometry& geometry = frame.resources->geometries[draw.geometry];
+        if (draw.program == nullptr) {
+            positions_.emplace(*frame.resources, *geometry.find(pipeline::Semantic::position));
+            return;
+        }
+        const std::uint32_t varyings = draw.program->shape().varyings;
+        clip_.resize(geometry.vertex_count);
+        std::vector<glm::vec4> unused(std::size_t{geometry.vertex_count} * varyings);
+        std::vector<float> sizes(geometry.vertex_count);
+        draw.program->run(instance, 0, {.positions = clip_, .varyings = unused, .point_sizes = sizes, .distances = {}});
+    }
+
+    double operator()(const std::array<std::uint32_t, 3>& vertices) const {
+        if (positions_) {
+            glm::dvec3 sum(0.0);
+            for (const std::uint32_t vertex : vertices) sum += glm::dvec3(glm::vec3((*positions_)(vertex)));
+            return -(to_eye_ * glm::dvec4(sum / 3.0, 1.0)).z;
+        }
+        glm::dvec4 sum(0.0);
+        bool parallel = true;
+        for (const std::uint32_t vertex : vertices) {
+            sum += glm::dvec4(clip_[vertex]);
+            parallel &= clip_[vertex].w == 1.0F;
+        }
+        return (parallel ? sum.z : sum.w) / 3.0;
+    }
+
+  private:
+    glm::dmat4 to_eye_;
+    std::optional<pipeline::AttributeReader> positions_;
+    std::vector<glm::vec4> clip_;
+};
+
 void add_triangles(std::vector<SortedTriangle>& triangles, const Frame& frame, std::uint32_t number) {
     const Draw& draw = frame.draws[number];
     const Geometry& geometry = frame.resources->geometries[draw.geometry];
     const pipeline::PrimitiveReader primitives(*frame.resources, geometry);
-    const pipeline::AttributeReader positions(*frame.resources, *geometry.find(pipeline::Semantic::position));
     for (std::uint32_t instance = 0; instance < draw.instances.size(); ++instance) {
-        const glm::dmat4 to_eye = glm::dmat4(frame.view_of_kbuffer().view) * glm::dmat4(draw.instances[instance]);
+        const CentroidDistance distance_of(frame, draw, instance);
         for (std::uint32_t i = 0; i < geometry.triangle_count(); ++i) {
             SortedTriangle triangle{number, instance, primitives(i), 0};
-            glm::dvec3 sum(0.0);
-            for (const std::uint32_t vertex : triangle.vertices) sum += glm::dvec3(glm::vec3(positions(vertex)));
-            const double distance = -(to_eye * glm::dvec4(sum / 3.0, 1.0)).z;
+            const double distance = distance_of(triangle.vertices);
             // What has no place in space is culled later, wherever it stands.
             triangle.key = ordered_bits(std::isfinite(distance) ? static_cast<float>(distance) : 0.0F);
             triangles.push_back(triangle);

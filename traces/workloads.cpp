@@ -81,7 +81,7 @@ pipeline::Frame kbuffer_frame(const pipeline::Frame& frame, std::shared_ptr<cons
     return graph.lower();
 }
 
-Workload taking(Workload workload, void (*change)(WorkloadOptions&, const std::string&), std::string name) {
+Workload taking(Workload workload, void (*change)(WorkloadOptions&, const std::string&), const std::string& name) {
     const auto changed = [change, name](auto function) {
         return [function = std::move(function), change, name](const Scene& scene, const auto& seen,
                                                               WorkloadOptions options) {

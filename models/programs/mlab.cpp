@@ -5,13 +5,15 @@
 #include "models/programs/nearest_k.hpp"
 #include "sim/check.hpp"
 
+#include <optional>
+
 namespace models {
 
 namespace {
 
 class Mlab final : public pipeline::ModifyProgram {
   public:
-    Mlab(std::uint32_t k, float opacity) : ModifyProgram(k, floats), opacity_(opacity) {}
+    Mlab(std::uint32_t k, std::optional<float> opacity) : ModifyProgram(k, floats), opacity_(opacity) {}
 
     std::string_view id() const override { return "mlab"; }
     std::string_view summary() const override { return "k nodes; what overflows is blended into the last"; }
@@ -45,8 +47,8 @@ class Mlab final : public pipeline::ModifyProgram {
 
     void make_entry(const pipeline::Fragment& fragment, float* entry) const override {
         for (std::uint32_t channel = 0; channel < 3; ++channel)
-            entry[channel] = opacity_ * finite(fragment.rgba[channel]);
-        entry[transmittance] = 1.0F - opacity_;
+            entry[channel] = opacity_.value_or(1.0F) * finite(fragment.rgba[channel]);
+        entry[transmittance] = opacity_ ? 1.0F - *opacity_ : finite(fragment.rgba[3]);
         entry[slot] = fragment.depth;
     }
 
@@ -54,7 +56,7 @@ class Mlab final : public pipeline::ModifyProgram {
     static constexpr std::uint32_t floats = 5, transmittance = 3, slot = 4;
     using Pass = Insertion<floats, slot>;
 
-    float opacity_;
+    std::optional<float> opacity_; ///< none: fragments are nodes
 };
 
 } // namespace
@@ -63,6 +65,11 @@ std::shared_ptr<const pipeline::ModifyProgram> make_mlab(std::uint32_t k, float 
     CHECK(k >= 1 && k <= most_mlab_nodes);
     CHECK(opacity >= 0.0F && opacity <= 1.0F);
     return std::make_shared<const Mlab>(k, opacity);
+}
+
+std::shared_ptr<const pipeline::ModifyProgram> make_nodes(std::uint32_t k) {
+    CHECK(k >= 1 && k <= most_mlab_nodes);
+    return std::make_shared<const Mlab>(k, std::nullopt);
 }
 
 } // namespace models

@@ -17,4 +17,7 @@ inline constexpr std::uint32_t most_mlab_nodes = 51;
 /// @param opacity of every fragment, 0 to 1
 std::shared_ptr<const pipeline::ModifyProgram> make_mlab(std::uint32_t k, float opacity);
 
+/// The same of fragments that are nodes already: their colour weighted, the share that they let through for an alpha.
+std::shared_ptr<const pipeline::ModifyProgram> make_nodes(std::uint32_t k);
+
 } // namespace models

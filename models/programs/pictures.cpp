@@ -78,6 +78,34 @@ glm::vec4 colour_at(const float* floats, const ColourSlots& slots) {
     return {floats[slots[0]], floats[slots[1]], floats[slots[2]], floats[slots[3]]};
 }
 
+/// Entries composited in stored order: premultiplied colour and transmittance.
+glm::vec4 composited(const float* pixel, const ModifyProgram& program, const ColourSlots& slots) {
+    glm::vec4 seen(0.0F, 0.0F, 0.0F, 1.0F);
+    for (std::uint32_t i = 0; i < program.k(); ++i) {
+        const glm::vec4 node = colour_at(pixel + std::size_t{i} * program.floats_per_entry(), slots);
+        seen = {glm::vec3(seen) + seen.a * glm::vec3(node), seen.a * node.a};
+    }
+    return seen;
+}
+
+class NodesShader final : public pipeline::Shader {
+  public:
+    explicit NodesShader(std::shared_ptr<const ModifyProgram> program) : program_(std::move(program)) {}
+
+    pipeline::ShaderShape shape() const override { return {.reads = 1, .registers = program_->targets() + 1}; }
+    void shade(const pipeline::ShaderInput& input, pipeline::SurfaceAccess& surfaces,
+               pipeline::ShaderOutput& output) const override {
+        const pipeline::QuadPlaces at(input);
+        const auto pixels = surfaces.pixels(0, at.x, at.y, input.pixels, 0, program_->targets());
+        surfaces.issue(3 * program_->k(), input.pixels);
+        for (std::size_t i = 0; i < 4; ++i)
+            if (pixels[i] != nullptr) output.colours[0][i] = composited(pixels[i], *program_, {0, 1, 2, 3});
+    }
+
+  private:
+    std::shared_ptr<const ModifyProgram> program_;
+};
+
 /// A premultiplied colour, and what it lets through, before what lies behind.
 glm::vec3 before(const glm::vec4& seen, const glm::vec3& behind) {
     glm::vec3 colour;
@@ -108,17 +136,16 @@ MakePicture state_picture(const ColourSlots& slots) {
 
 MakePicture node_picture(const ColourSlots& slots) {
     return [slots](const PictureSetup& setup) {
-        const std::uint32_t k = setup.program->k(), floats = setup.program->floats_per_entry();
-        return picture_shader(setup, 3 * k + 2,
-                              [slots, k, floats](const PicturePlace&, const float* pixel, const glm::vec3& behind) {
-                                  glm::vec4 seen(0.0F, 0.0F, 0.0F, 1.0F);
-                                  for (std::uint32_t i = 0; i < k; ++i) {
-                                      const glm::vec4 node = colour_at(pixel + std::size_t{i} * floats, slots);
-                                      seen = {glm::vec3(seen) + seen.a * glm::vec3(node), seen.a * node.a};
-                                  }
-                                  return before(seen, behind);
-                              });
+        return picture_shader(
+            setup, 3 * setup.program->k() + 2,
+            [slots, program = setup.program](const PicturePlace&, const float* pixel, const glm::vec3& behind) {
+                return before(composited(pixel, *program, slots), behind);
+            });
     };
+}
+
+std::shared_ptr<const pipeline::Shader> nodes_shader(std::shared_ptr<const ModifyProgram> program) {
+    return std::make_shared<const NodesShader>(std::move(program));
 }
 
 } // namespace models

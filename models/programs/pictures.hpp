@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 
 namespace models {
 
@@ -22,5 +23,8 @@ MakePicture state_picture(const ColourSlots& slots);
 
 /// The entries' colours composited in stored order before the background.
 MakePicture node_picture(const ColourSlots& slots);
+
+/// {C, T} of the nodes of make_nodes(), sample 0, for a blend that leaves C + T * what is there.
+std::shared_ptr<const pipeline::Shader> nodes_shader(std::shared_ptr<const pipeline::ModifyProgram> program);
 
 } // namespace models

@@ -60,7 +60,7 @@ void FragmentPipeline::begin_pass(std::uint32_t registers_per_fragment) {
 
 void FragmentPipeline::drop_surface(std::uint64_t begin, std::uint64_t end) {
     l1_.drop_texture_lines(begin / TextureParams::line_bytes,
-                           (end + TextureParams::line_bytes - 1) / TextureParams::line_bytes);
+                           end / TextureParams::line_bytes + (end % TextureParams::line_bytes != 0 ? 1 : 0));
 }
 
 // A10; the exact rule breaks ties of depth by submission order, so that no layer is lost and none is repeated.

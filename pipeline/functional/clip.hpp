@@ -33,6 +33,7 @@ class UserPlanes {
 struct PrimitiveCorners {
     std::array<const ScreenVertex*, 3> vertices{};
     std::array<const ClipDistances*, 3> distances{};
+    float point_size = 1.0F; ///< pixels; of a point
 };
 
 /// A corner of a clipped triangle.

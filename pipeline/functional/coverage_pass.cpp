@@ -8,7 +8,9 @@
 #include "sim/check.hpp"
 
 #include <atomic>
+#include <cmath>
 #include <limits>
+#include <span>
 
 namespace pipeline {
 
@@ -158,6 +160,31 @@ void count_quads_of_draws(const std::vector<PlannedPiece>& pieces, const std::ve
     }
 }
 
+void run_program(FrontEndPlan& plan, const PlannedVertices& run, const PlannedPiece& piece) {
+    const PlannedState& state = plan.states[run.state];
+    const auto part = [&piece](auto& list, std::uint64_t first, std::size_t of_each) {
+        return std::span(list).subspan(first + piece.first * of_each, piece.count * of_each);
+    };
+    std::vector<glm::vec4> positions(piece.count);
+    ProgramVertices made{.positions = positions,
+                         .varyings = part(plan.varyings, run.first_varying, run.shape.varyings),
+                         .point_sizes = part(plan.point_sizes, run.first_size, run.shape.point_size ? 1 : 0),
+                         .distances = part(plan.distances, run.first_distance, state.state->clip_planes != 0 ? 1 : 0)};
+    run.program->run(run.instance, run.used.first + piece.first, made);
+    for (std::uint32_t i = 0; i < piece.count; ++i) {
+        ScreenVertex& vertex = plan.vertices[run.first_vertex + piece.first + i];
+        vertex = place_vertex(state.viewport, positions[i]);
+        if (made.distances.empty()) continue;
+        for (std::uint32_t plane = 0; plane < most_clip_distances; ++plane) {
+            const bool cuts = (state.state->clip_planes >> plane & 1U) != 0;
+            float& distance = made.distances[i][plane];
+            if (!cuts) distance = 0.0F;
+            if (!std::isfinite(distance)) vertex.outside = outside::not_finite;
+            if (distance < 0.0F) vertex.outside |= outside::user_plane(plane);
+        }
+    }
+}
+
 } // namespace
 
 void transform_pass(FrontEndPlan& plan) {
@@ -169,6 +196,11 @@ void transform_pass(FrontEndPlan& plan) {
         plan.progress.begin_piece();
         const PlannedPiece& piece = pieces[i];
         const PlannedVertices& run = plan.runs[piece.of];
+        if (run.program != nullptr) {
+            run_program(plan, run, piece);
+            plan.progress.end_piece();
+            return;
+        }
         const glm::mat4 matrix = clip_matrix(plan.view, *run.model);
         const AttributeReader position(plan.resources, *run.geometry->find(Semantic::position), run.instance);
         ScreenVertex* target = plan.vertices.data() + run.first_vertex + piece.first;

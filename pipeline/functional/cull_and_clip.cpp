@@ -91,8 +91,7 @@ void cull_and_clip(const Viewport& viewport, Culling culling, const PrimitiveCor
     }
 }
 
-void cull_point(const Viewport& viewport, const RasterState& state, const PrimitiveCorners& point,
-                PrimitiveParts& parts) {
+void cull_point(const Viewport& viewport, const PrimitiveCorners& point, PrimitiveParts& parts) {
     const ScreenVertex& centre = *point.vertices[0];
     parts.count = 0;
     parts.clipped = false;
@@ -103,7 +102,7 @@ void cull_point(const Viewport& viewport, const RasterState& state, const Primit
     } else {
         parts.fate = PrimitiveFate::drawn;
         parts.count = 1;
-        parts.parts[0].corners = PointSquare(centre, state.point_size).corners(centre);
+        parts.parts[0].corners = PointSquare(centre, point.point_size).corners(centre);
     }
 }
 

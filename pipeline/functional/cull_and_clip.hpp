@@ -43,8 +43,7 @@ struct PrimitiveParts {
 void cull_and_clip(const Viewport& viewport, Culling culling, const PrimitiveCorners& triangle, PrimitiveParts& parts);
 /// The same of a point: the first corner. Its one part is the square around it, see PointSquare::corners. It is drawn
 /// where its centre lies inside, and then as a whole.
-void cull_point(const Viewport& viewport, const RasterState& state, const PrimitiveCorners& point,
-                PrimitiveParts& parts);
+void cull_point(const Viewport& viewport, const PrimitiveCorners& point, PrimitiveParts& parts);
 /// The same of a line: the first two corners, which its one part repeats with the second one twice. One of no length on
 /// the sub-pixel grid is degenerate.
 void cull_and_clip_line(const Viewport& viewport, const RasterState& state, const PrimitiveCorners& line,

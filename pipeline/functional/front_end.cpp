@@ -53,7 +53,10 @@ void check_draw(const Resources& resources, const std::vector<Draw>& draws, std:
     require(draw.material < resources.materials.size(), "the number of an existing material");
     require(!draw.instances.empty(), "at least one instance");
     for (const glm::mat4& model : draw.instances) require(finite(model), "model matrices of finite numbers");
-    for (const VertexAttribute& attribute : resources.geometries[draw.geometry].attributes)
+    const Geometry& geometry = resources.geometries[draw.geometry];
+    require(draw.program != nullptr || geometry.find(Semantic::position) != nullptr, "positions, or a vertex program");
+    require(draw.program == nullptr || draw.program->shape().varyings <= most_varyings, "at most 64 varyings");
+    for (const VertexAttribute& attribute : geometry.attributes)
         require(has_elements_for(resources, attribute, draw.instances.size()), "attributes for all its instances");
 }
 
@@ -116,8 +119,23 @@ class VertexRuns {
         const auto next = static_cast<std::uint32_t>(runs_.size());
         std::uint32_t& last = last_.try_emplace(key_of(geometry, model, instance, state), next).first->second;
         if (last < next && join(runs_[last].used, used)) return last;
-        runs_.push_back({&geometry, &model, used, instance, state, 0, 0});
+        runs_.push_back({.geometry = &geometry, .model = &model, .used = used, .instance = instance, .state = state});
         return last = next;
+    }
+    /// Those of a vertex program: parts of a draw share them, other draws do not.
+    std::uint32_t run_of(const VertexProgram& program, const Geometry& geometry, const glm::mat4& model,
+                         std::uint32_t instance, std::uint32_t state, const VertexRange& used) {
+        const auto next = static_cast<std::uint32_t>(runs_.size());
+        const auto [known, added] = of_programs_.try_emplace({&program, instance, state, used.first, used.end}, next);
+        if (!added) return known->second;
+        runs_.push_back({.geometry = &geometry,
+                         .model = &model,
+                         .used = used,
+                         .instance = instance,
+                         .state = state,
+                         .program = &program,
+                         .shape = program.shape()});
+        return next;
     }
 
   private:
@@ -147,6 +165,9 @@ class VertexRuns {
 
     std::vector<PlannedVertices>& runs_;
     std::map<Key, std::uint32_t> last_; ///< run that was found last, or as many as there were
+    std::map<std::tuple<const VertexProgram*, std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t>,
+             std::uint32_t>
+        of_programs_;
 };
 
 /// Lays out the instances or parts, their primitives and their vertices.
@@ -188,16 +209,23 @@ class Planner {
     void finish() {
         stream_.draws.own().shrink_to_fit();
         stream_.primitives.own().resize(primitives_);
-        std::uint64_t vertices = 0, distances = 0;
+        std::uint64_t vertices = 0, distances = 0, varyings = 0, sizes = 0;
         for (PlannedVertices& run : plan_.runs) {
             const std::uint32_t count = run.used.end - run.used.first;
             run.first_vertex = vertices;
             run.first_distance = distances;
             vertices += count;
             if (plan_.states[run.state].state->clip_planes != 0) distances += count;
+            run.first_varying = varyings;
+            run.first_size = sizes;
+            varyings += std::uint64_t{count} * run.shape.varyings;
+            if (run.shape.point_size) sizes += count;
+            if (run.program != nullptr) stream_.varyings = std::max(stream_.varyings, run.shape.varyings + 1);
         }
         plan_.vertices.resize(vertices);
         plan_.distances.resize(distances);
+        plan_.varyings.resize(varyings);
+        plan_.point_sizes.resize(sizes);
     }
 
     static std::uint32_t state_of(const FrontEndOptions& options, std::size_t i) {
@@ -222,8 +250,10 @@ class Planner {
         const Culling culling = state.state->culling == FaceCulling::by_material
                                     ? culling_of(plan_.options.both_faces || material.double_sided, model)
                                     : culling_of(*state.state);
-        plan_.instances.push_back({&geometry, &material, &model, &state, range.instance,
-                                   runs_.run_of(geometry, model, range.instance, state.alike, some), culling});
+        const std::uint32_t run = draw.program == nullptr
+                                      ? runs_.run_of(geometry, model, range.instance, state.alike, some)
+                                      : runs_.run_of(*draw.program, geometry, model, range.instance, state.alike, some);
+        plan_.instances.push_back({&geometry, &material, &model, &state, range.instance, run, culling});
         if (primitives_ + range.primitives > std::numeric_limits<std::uint32_t>::max())
             throw sim::InputError(
                 fmt::format("draw {} \"{}\": expected at most 2^32 - 1 primitives in a pass", range.draw, draw.name));

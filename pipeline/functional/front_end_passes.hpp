@@ -5,6 +5,7 @@
 #include "pipeline/functional/cull_and_clip.hpp"
 #include "pipeline/functional/front_end.hpp"
 #include "pipeline/functional/vertex_fetch.hpp"
+#include "pipeline/vertex_program.hpp"
 
 #include <mutex>
 
@@ -26,6 +27,10 @@ struct PlannedVertices {
     std::uint32_t state = 0;          ///< of FrontEndPlan::states
     std::uint64_t first_vertex = 0;   ///< where they lie in FrontEndPlan::vertices
     std::uint64_t first_distance = 0; ///< ... in FrontEndPlan::distances, where planes of the user cut
+    const VertexProgram* program = nullptr;
+    VertexProgramShape shape{};      ///< of the program
+    std::uint64_t first_varying = 0; ///< in FrontEndPlan::varyings, where there is a program
+    std::uint64_t first_size = 0;    ///< in FrontEndPlan::point_sizes, where it gives sizes
 };
 
 /// One instance of one draw.
@@ -74,6 +79,8 @@ struct FrontEndPlan {
     std::vector<PlannedVertices> runs;
     std::vector<ScreenVertex> vertices;
     std::vector<ClipDistances> distances;
+    std::vector<glm::vec4> varyings;
+    std::vector<float> point_sizes;
 
     FrontEndPlan(const Resources& resources_, const View& view_, const FrontEndOptions& options_)
         : resources(resources_), view(view_), options(options_), progress(options_) {}
@@ -85,12 +92,19 @@ struct FrontEndPlan {
         const PrimitiveCorners whole = corners(instance, vertices_of_primitive);
         switch (corners_of(instance.geometry->topology)) {
         case 1:
-            return cull_point(state.viewport, *state.state, whole, parts);
+            return cull_point(state.viewport, whole, parts);
         case 2:
             return cull_and_clip_line(state.viewport, *state.state, whole, parts);
         default:
             return pipeline::cull_and_clip(state.viewport, instance.culling, whole, parts);
         }
+    }
+
+    /// Of a vertex of an instance that is drawn with a program.
+    std::span<const glm::vec4> varyings_of(const PlannedInstance& instance, std::uint32_t vertex) const {
+        const PlannedVertices& run = runs[instance.run];
+        const std::size_t place = vertex - run.used.first;
+        return std::span(varyings).subspan(run.first_varying + place * run.shape.varyings, run.shape.varyings);
     }
 
   private:
@@ -104,6 +118,9 @@ struct FrontEndPlan {
             result.vertices[i] = vertices.data() + run.first_vertex + place;
             if (cut) result.distances[i] = distances.data() + run.first_distance + place;
         }
+        const bool of_vertex = run.shape.point_size && instance.state->state->point_size_of_vertex;
+        result.point_size = of_vertex ? point_sizes[run.first_size + vertices_of_primitive[0] - run.used.first]
+                                      : instance.state->state->point_size;
         return result;
     }
 };

@@ -60,6 +60,8 @@ std::uint16_t float_to_half(float value) {
     return static_cast<std::uint16_t>(sign | ((size - 0x38000000U) >> 13U));
 }
 
+float srgb_decode(float encoded) { return static_cast<float>(srgb_to_linear(static_cast<double>(encoded))); }
+
 const std::array<float, 256>& srgb_decode_table() {
     static const std::array<float, 256> table = make_srgb_table();
     return table;

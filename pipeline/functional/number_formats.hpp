@@ -31,7 +31,9 @@ constexpr std::uint8_t float_to_unorm8(float value) {
 }
 constexpr float unorm8_to_float(std::uint8_t code) { return static_cast<float>(code) / 255.0F; }
 
-/// The linear value of every sRGB code (IEC 61966-2-1).
+/// The linear value of an sRGB-encoded one (IEC 61966-2-1).
+float srgb_decode(float encoded);
+/// ... of every code.
 const std::array<float, 256>& srgb_decode_table();
 
 /// code / 255 of every code: the same for images that are not sRGB-encoded, and for alpha.

@@ -50,7 +50,7 @@ CoveredQuad quad_of_pixel(std::int32_t x, std::int32_t y) {
 } // namespace
 
 PointSquare::PointSquare(const ScreenVertex& centre, float size) {
-    const float pixels = std::clamp(size, 1.0F, largest_point);
+    const float pixels = size > 1.0F ? std::min(size, largest_point) : 1.0F; // a program may give NaN
     side = static_cast<std::int32_t>(round_even(static_cast<double>(pixels * subpixel_one)));
     left = centre.x - side / 2;
     top = centre.y - side / 2;

@@ -19,12 +19,13 @@ constexpr std::size_t quads_of_piece = 4096;
 /// Shades a run of quads; a group belongs to the piece in which it begins.
 class GroupShading {
   public:
-    GroupShading(const Pass& pass, FragmentStream& stream, const SurfaceStore& surfaces, std::uint32_t outputs)
+    GroupShading(const Pass& pass, FragmentStream& stream, const SurfaceStore& surfaces, const ShaderShape& shape)
         : shader_(*pass.shader),
           stream_(stream),
           quads_(stream.quads.own()),
+          depths_(shape.sets_depth ? &stream.depths.own() : nullptr),
           access_(surfaces, pass.reads),
-          outputs_(outputs) {}
+          outputs_(shape.outputs) {}
 
     /// Returns how many fragments were discarded.
     std::uint64_t run(std::size_t begin, std::size_t end) {
@@ -43,12 +44,16 @@ class GroupShading {
         const ShaderInput input = shader_input(stream_, static_cast<QuadId>(first));
         ShaderOutput output;
         output.alive = input.pixels;
+        output.depth = input.depth;
         shader_.shade(input, access_, output);
         std::uint64_t discarded = 0;
         for (std::size_t quad = first; quad < after; ++quad) {
             const unsigned before = stream_.quads[quad].alive;
             quads_[quad].alive = static_cast<std::uint8_t>(before & output.alive);
             discarded += pixels_in(before & ~output.alive);
+            if (depths_ != nullptr)
+                for (std::size_t lane = 0; lane < 4; ++lane)
+                    (*depths_)[quad][lane] = output.depth[lane] > 0.0F ? std::min(output.depth[lane], 1.0F) : 0.0F;
             for (std::uint32_t number = 0; number < outputs_; ++number)
                 (number == 0 ? stream_.colours : stream_.more_outputs[number - 1])[quad] = output.colours[number];
         }
@@ -57,7 +62,8 @@ class GroupShading {
 
     const Shader& shader_;
     FragmentStream& stream_;
-    std::vector<Quad>& quads_; ///< its own
+    std::vector<Quad>& quads_;                  ///< its own
+    std::vector<std::array<float, 4>>* depths_; ///< its own, where the shader sets them
     SurfaceAccess access_;
     std::uint32_t outputs_;
 };
@@ -77,6 +83,7 @@ ShaderInput shader_input(const FragmentStream& stream, QuadId first) {
     input.depth = stream.depths[first];
     if (!stream.given_colours.empty()) input.colour = stream.given_colours[first];
     if (!stream.given_normals.empty()) input.normal = stream.given_normals[first];
+    input.varyings = {stream.given_varyings.data() + std::size_t{first} * stream.varyings, stream.varyings};
     return input;
 }
 
@@ -89,12 +96,13 @@ void shade(const Pass& pass, FragmentStream& stream, const SurfaceStore& surface
                                                             pass.name, pass.reads.size(), shape.reads));
     const std::size_t quads = stream.quads.size();
     stream.quads.own(); // before several threads ask for them
+    if (shape.sets_depth) stream.depths.own();
     stream.colours.resize(quads);
     stream.more_outputs.resize(shape.outputs - 1);
     for (auto& output : stream.more_outputs) output.resize(quads);
     std::atomic<std::uint64_t> discarded{0};
     parallel_for(threads, (quads + quads_of_piece - 1) / quads_of_piece, [&](std::size_t piece) {
-        GroupShading shading(pass, stream, surfaces, shape.outputs);
+        GroupShading shading(pass, stream, surfaces, shape);
         discarded += shading.run(piece * quads_of_piece, std::min((piece + 1) * quads_of_piece, quads));
     });
     stream.fragments_discarded += discarded;

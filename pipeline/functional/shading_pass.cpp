@@ -12,6 +12,7 @@
 #include "pipeline/functional/points_lines.hpp"
 #include "pipeline/functional/raster_triangle.hpp"
 #include "pipeline/functional/shader.hpp"
+#include "pipeline/functional/varyings.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -51,7 +52,8 @@ FragmentShader make_shader(const FrontEndPlan& plan, const PlannedInstance& inst
 /// True when some draw's shader reads a texture.
 bool textures_are_read(const FrontEndPlan& plan) {
     return std::any_of(plan.instances.begin(), plan.instances.end(), [&](const PlannedInstance& instance) {
-        return instance.material->base_texture >= 0 && make_shader(plan, instance).samples();
+        return plan.runs[instance.run].program == nullptr && instance.material->base_texture >= 0 &&
+               make_shader(plan, instance).samples();
     });
 }
 
@@ -80,7 +82,9 @@ class Shading {
         const std::uint32_t range = stream_.range_of(primitive);
         range_ = &stream_.draws[range];
         instance_ = &plan_.instances[range];
-        shader_.emplace(make_shader(plan_, *instance_));
+        program_ = plan_.runs[instance_->run].program != nullptr;
+        shader_.reset();
+        if (!program_) shader_.emplace(make_shader(plan_, *instance_));
         reader_.emplace(plan_.resources, *instance_->geometry, range_->first_triangle);
     }
 
@@ -93,13 +97,24 @@ class Shading {
         plan_.cull_and_clip(*instance_, vertices, parts_);
         const PrimitivePart& part = parts_.parts[number - stream_.primitives[primitive].first_triangle];
         set_up_part(part);
-        if (!shader_->needed()) return;
         const RasterState& state = *instance_->state->state;
-        triangle_ = shader_->triangle(vertices, parts_.clipped ? &part.weights : nullptr,
-                                      reader_->provoking(primitive - range_->first_primitive, state.provoking));
+        const auto* clipped = parts_.clipped ? &part.weights : nullptr;
+        const std::size_t provoking = reader_->provoking(primitive - range_->first_primitive, state.provoking);
+        if (program_) enter_varyings(vertices, part, clipped, provoking);
+        if (!shades()) return;
+        triangle_ = shader_->triangle(vertices, clipped, provoking);
         if (!has_sprites(*instance_)) return;
         const std::array<glm::vec2, 3> sprite{{{0.0F, 0.0F}, {1.0F, 0.0F}, {0.0F, 1.0F}}};
         for (std::size_t i = 0; i < 3; ++i) triangle_.corners[i].texcoord = sprite[i];
+    }
+
+    bool shades() const { return shader_ && shader_->needed(); }
+
+    void enter_varyings(const std::array<std::uint32_t, 3>& vertices, const PrimitivePart& part,
+                        const std::array<glm::vec3, 3>* clipped, std::size_t provoking) {
+        std::array<std::span<const glm::vec4>, 3> given;
+        for (std::size_t i = 0; i < 3; ++i) given[i] = plan_.varyings_of(*instance_, vertices[i]);
+        varyings_.begin(plan_.runs[instance_->run].shape, given, part.corners, clipped, provoking);
     }
 
     void set_up_part(const PrimitivePart& part) {
@@ -113,7 +128,7 @@ class Shading {
         raster_ = set_up(part.corners[0], part.corners[1], part.corners[2], state.viewport);
         depth_.emplace(raster_, part.corners);
         if (corners_ == 3) depth_->add_bias(state.state->depth, plan_.options.depth_step);
-        if (shader_->needed()) attributes_.emplace(raster_, part.corners);
+        if (program_ || shades()) attributes_.emplace(raster_, part.corners);
     }
 
     Lanes depths(std::int32_t x, std::int32_t y, std::uint32_t sample) const {
@@ -136,7 +151,13 @@ class Shading {
             quad.alive = quad.covered;
             covered |= quad.covered;
         }
-        if (!shader_->needed()) return;
+        if (program_) {
+            const std::size_t each = stream_.varyings;
+            const std::span given(stream_.given_varyings.own().data() + first * each, each * group.size());
+            varyings_.interpolate(weights(x, y, covered, group), corners_ == 1, given);
+            for (std::size_t n = 1; n < group.size(); ++n) std::copy_n(given.begin(), each, given.begin() + n * each);
+        }
+        if (!shades()) return;
         const FragmentShader::Output output = shader_->shade(triangle_, weights(x, y, covered, group), covered);
         for (std::size_t n = 0; n < group.size(); ++n) {
             group[n].alive &= output.alive;
@@ -164,7 +185,9 @@ class Shading {
     std::uint32_t plane_rows_ = plane_rows(plan_.view.height, plan_.view.samples);
     const DrawRange* range_ = nullptr;
     const PlannedInstance* instance_ = nullptr;
-    std::optional<FragmentShader> shader_;
+    std::optional<FragmentShader> shader_; ///< none where the draw has a program
+    bool program_ = false;
+    VaryingPlanes varyings_;
     std::optional<PrimitiveReader> reader_;
     RasterTriangle raster_{};
     std::optional<DepthPlane> depth_;
@@ -183,6 +206,7 @@ void shading_pass(FrontEndPlan& plan, FragmentStream& stream) {
     stream.depths.own().resize(quads);
     if (plan.options.colours) stream.colours.resize(quads);
     if (plan.options.normals) stream.given_normals.own().resize(quads);
+    stream.given_varyings.own().resize(quads * stream.varyings);
     if (textures_are_read(plan)) stream.texture_lines.own().resize(quads, ~0U);
 
     const std::size_t pieces = (quads + quads_per_piece - 1) / quads_per_piece;

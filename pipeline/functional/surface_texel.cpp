@@ -70,6 +70,21 @@ void pack_floats(const glm::vec4& colour, int channels, std::byte* target) {
         store(target + std::ptrdiff_t{4} * i, saturated(colour[i], std::numeric_limits<float>::max()));
 }
 
+/// [-1,1] -> -127..127 to nearest even; NaN gives 0.
+std::int8_t snorm8_code(float value) {
+    return static_cast<std::int8_t>(round_even(static_cast<double>(saturated(value, 1.0F)) * 127.0));
+}
+
+/// Its most negative code stands for -1, too.
+float snorm8_value(std::int8_t code) { return std::max(static_cast<float>(code) / 127.0F, -1.0F); }
+
+/// An integer channel of 1, 2 or 4 bytes.
+template <class Unsigned, class Signed>
+std::uint32_t load_integer(const std::byte* source, bool has_sign) {
+    if (has_sign) return static_cast<std::uint32_t>(static_cast<std::int32_t>(load<Signed>(source)));
+    return load<Unsigned>(source);
+}
+
 constexpr double steps_of(SurfaceFormat format) { return format == SurfaceFormat::d16 ? 65535.0 : 16777215.0; }
 
 } // namespace
@@ -90,6 +105,17 @@ void pack_colour(SurfaceFormat format, const glm::vec4& colour, std::byte* targe
         store(target, unorm_code(colour.r, 1023) | unorm_code(colour.g, 1023) << 10U |
                           unorm_code(colour.b, 1023) << 20U | unorm_code(colour.a, 3) << 30U);
         break;
+    case SurfaceFormat::r16:
+    case SurfaceFormat::rg16:
+    case SurfaceFormat::rgba16:
+        for (int i = 0; i < channels; ++i)
+            store(target + std::ptrdiff_t{2} * i, static_cast<std::uint16_t>(unorm_code(colour[i], 65535)));
+        break;
+    case SurfaceFormat::r8s:
+    case SurfaceFormat::rg8s:
+    case SurfaceFormat::rgba8s:
+        for (int i = 0; i < channels; ++i) store(target + i, snorm8_code(colour[i]));
+        break;
     case SurfaceFormat::r11g11b10f:
         store(target, small_float_code(colour.r, 6) | small_float_code(colour.g, 6) << 11U |
                           small_float_code(colour.b, 5) << 22U);
@@ -105,7 +131,7 @@ void pack_colour(SurfaceFormat format, const glm::vec4& colour, std::byte* targe
         pack_floats(colour, channels, target);
         break;
     default:
-        CHECK_MSG(false, "a colour of integers or a depth is not packed from linear colour");
+        CHECK_MSG(false, "integers, depths and compressed blocks are not packed from linear colour");
     }
 }
 
@@ -116,9 +142,15 @@ glm::vec4 unpack_texel(SurfaceFormat format, const std::byte* source) {
     case SurfaceFormat::r8:
     case SurfaceFormat::rg8:
     case SurfaceFormat::rgba8:
+    case SurfaceFormat::bc1:
+    case SurfaceFormat::bc2:
+    case SurfaceFormat::bc3:
         for (int i = 0; i < channels; ++i) colour[i] = unorm8_to_float(static_cast<std::uint8_t>(source[i]));
         break;
     case SurfaceFormat::srgb8a8:
+    case SurfaceFormat::srgb_bc1:
+    case SurfaceFormat::srgb_bc2:
+    case SurfaceFormat::srgb_bc3:
         for (int i = 0; i < 3; ++i) colour[i] = srgb_decode_table()[static_cast<std::uint8_t>(source[i])];
         colour.a = unorm8_to_float(static_cast<std::uint8_t>(source[3]));
         break;
@@ -145,10 +177,16 @@ glm::vec4 unpack_texel(SurfaceFormat format, const std::byte* source) {
     case SurfaceFormat::rgba32f:
         for (int i = 0; i < channels; ++i) colour[i] = load<float>(source + std::ptrdiff_t{4} * i);
         break;
-    case SurfaceFormat::r32u:
-    case SurfaceFormat::rg32u:
+    case SurfaceFormat::r16:
+    case SurfaceFormat::rg16:
+    case SurfaceFormat::rgba16:
         for (int i = 0; i < channels; ++i)
-            colour[i] = static_cast<float>(load<std::uint32_t>(source + std::ptrdiff_t{4} * i));
+            colour[i] = static_cast<float>(load<std::uint16_t>(source + std::ptrdiff_t{2} * i)) / 65535.0F;
+        break;
+    case SurfaceFormat::r8s:
+    case SurfaceFormat::rg8s:
+    case SurfaceFormat::rgba8s:
+        for (int i = 0; i < channels; ++i) colour[i] = snorm8_value(load<std::int8_t>(source + i));
         break;
     case SurfaceFormat::s8:
         colour.r = static_cast<float>(source[0]);
@@ -159,6 +197,10 @@ glm::vec4 unpack_texel(SurfaceFormat format, const std::byte* source) {
     case SurfaceFormat::d32f:
         colour.r = depth_value(format, unpack_depth_stencil(format, source).depth);
         break;
+    default: {
+        const glm::uvec4 codes = unpack_integers(format, source);
+        return info_of(format).kind == ChannelKind::integer ? glm::vec4(codes) : glm::vec4(glm::ivec4(codes));
+    }
     }
     return colour;
 }
@@ -169,15 +211,26 @@ glm::vec4 through_format(SurfaceFormat format, const glm::vec4& colour, Fp16Over
     return unpack_texel(format, bytes.data());
 }
 
-void pack_integers(SurfaceFormat format, const glm::uvec2& values, std::byte* target) {
-    CHECK(info_of(format).kind == ChannelKind::integer);
-    for (int i = 0; i < info_of(format).channels; ++i) store(target + std::ptrdiff_t{4} * i, values[i]);
+void pack_integers(SurfaceFormat format, const glm::uvec4& values, std::byte* target) {
+    CHECK(is_integer(format));
+    const SurfaceFormatInfo& info = info_of(format);
+    const std::size_t bytes = info.bytes / info.channels;
+    for (int i = 0; i < info.channels; ++i) // the low bits come first
+        std::memcpy(target + bytes * static_cast<std::size_t>(i), &values[i], bytes);
 }
 
-glm::uvec2 unpack_integers(SurfaceFormat format, const std::byte* source) {
-    CHECK(info_of(format).kind == ChannelKind::integer);
-    glm::uvec2 values(0U);
-    for (int i = 0; i < info_of(format).channels; ++i) values[i] = load<std::uint32_t>(source + std::ptrdiff_t{4} * i);
+glm::uvec4 unpack_integers(SurfaceFormat format, const std::byte* source) {
+    CHECK(is_integer(format));
+    const SurfaceFormatInfo& info = info_of(format);
+    const int bytes = info.bytes / info.channels;
+    const bool has_sign = info.kind == ChannelKind::signed_integer;
+    glm::uvec4 values(0U, 0U, 0U, 1U);
+    for (int i = 0; i < info.channels; ++i) {
+        const std::byte* channel = source + std::ptrdiff_t{bytes} * i;
+        values[i] = bytes == 1   ? load_integer<std::uint8_t, std::int8_t>(channel, has_sign)
+                    : bytes == 2 ? load_integer<std::uint16_t, std::int16_t>(channel, has_sign)
+                                 : load<std::uint32_t>(channel);
+    }
     return values;
 }
 

@@ -9,7 +9,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
 
 namespace pipeline {
@@ -17,7 +16,7 @@ namespace pipeline {
 /// A stored depth. Codes of one format order as their depths do, so a depth test is an integer comparison.
 using DepthCode = std::uint32_t;
 
-/// Writes bytes_of(format) bytes. Of linear colour; not for formats of integers.
+/// Writes bytes_of(format) bytes. Of linear colour; not for formats of integers and compressed ones.
 void pack_colour(SurfaceFormat format, const glm::vec4& colour, std::byte* target,
                  Fp16Overflow overflow = Fp16Overflow::saturate);
 
@@ -28,9 +27,10 @@ glm::vec4 unpack_texel(SurfaceFormat format, const std::byte* source);
 /// The colour that is read back after storing `colour`.
 glm::vec4 through_format(SurfaceFormat format, const glm::vec4& colour, Fp16Overflow overflow = Fp16Overflow::saturate);
 
-/// Of r32u and rg32u.
-void pack_integers(SurfaceFormat format, const glm::uvec2& values, std::byte* target);
-glm::uvec2 unpack_integers(SurfaceFormat format, const std::byte* source);
+/// Of formats of integers. Numbers with sign are their 32 bits of two's complement; as many bits as the format has are
+/// stored. Missing channels read 0, 0, 0, 1.
+void pack_integers(SurfaceFormat format, const glm::uvec4& values, std::byte* target);
+glm::uvec4 unpack_integers(SurfaceFormat format, const std::byte* source);
 
 /// What the surface stores for window depth `depth`: round(depth * (2^bits - 1)) to nearest even, or the float's own
 /// bits. Depths outside [0,1] are clamped; NaN counts as 0.

@@ -64,24 +64,30 @@ inline Lanes wrapped(Wrap wrap, Lanes values) {
     return result;
 }
 
-/// `wrapped`: of wrapped(), for an axis of `texels` texels.
-inline AxisReads reads_along(Wrap wrap, bool linear, Lanes wrapped, std::uint32_t texels) {
+/// `places`: in texels from the beginning of the first one, from -2 to two beyond the last; where filtered linearly,
+/// less half a texel.
+inline AxisReads reads_at(Wrap wrap, Lanes places, std::uint32_t texels) {
     const auto size = static_cast<std::int32_t>(texels);
     // A mirror repeats its last texel; a border lies at -1 and size.
     const std::int32_t before = wrap == Wrap::repeat ? size - 1 : wrap == Wrap::border ? -1 : 0;
     const std::int32_t after = wrap == Wrap::repeat ? 0 : wrap == Wrap::border ? size : size - 1;
-    const float offset = linear ? 0.5F : 0.0F;
     AxisReads reads;
     for (std::size_t i = 0; i < 4; ++i) {
-        const float place = wrapped[i] * static_cast<float>(size) - offset;
-        const auto truncated = static_cast<std::int32_t>(place);
-        const float rest = place - static_cast<float>(truncated);
+        const auto truncated = static_cast<std::int32_t>(places[i]);
+        const float rest = places[i] - static_cast<float>(truncated);
         const std::int32_t floor = truncated - detail::is_negative(rest);
         reads.low[i] = detail::inside(floor, size, before, after);
         reads.high[i] = detail::inside(floor + 1, size, before, after);
         reads.share[i] = rest + static_cast<float>(detail::is_negative(rest));
     }
     return reads;
+}
+
+/// `wrapped`: of wrapped(), for an axis of `texels` texels.
+inline AxisReads reads_along(Wrap wrap, bool linear, Lanes wrapped, std::uint32_t texels) {
+    const float offset = linear ? 0.5F : 0.0F;
+    for (std::size_t i = 0; i < 4; ++i) wrapped[i] = wrapped[i] * static_cast<float>(texels) - offset;
+    return reads_at(wrap, wrapped, texels);
 }
 
 } // namespace pipeline

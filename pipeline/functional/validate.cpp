@@ -104,10 +104,12 @@ bool indices_fit(const Resources& resources, const Geometry& geometry) {
                 resources.buffers[geometry.index_buffer].bytes.size());
 }
 
-void validate_geometry(const Resources& resources, const Geometry& geometry, const Complaint& complain) {
+void validate_geometry(const Resources& resources, const Geometry& geometry, Positions positions,
+                       const Complaint& complain) {
     complain.require(geometry.topology <= last_topology, "a known topology, not {}",
                      static_cast<unsigned>(geometry.topology));
-    complain.require(geometry.find(Semantic::position) != nullptr, "a position attribute");
+    complain.require(positions == Positions::computed || geometry.find(Semantic::position) != nullptr,
+                     "a position attribute");
     for (const VertexAttribute& attribute : geometry.attributes) {
         complain.require(geometry.find(attribute.semantic) == &attribute, "each semantic once");
         validate_attribute(resources, geometry, attribute, complain);
@@ -157,9 +159,10 @@ void Resources::find_runs() {
     }
 }
 
-void Resources::validate(const std::string& where) const {
+void Resources::validate(const std::string& where, Positions positions) const {
     for (std::size_t i = 0; i < geometries.size(); ++i)
-        validate_geometry(*this, geometries[i], Complaint(where, part_name("geometry", i, geometries[i].name)));
+        validate_geometry(*this, geometries[i], positions,
+                          Complaint(where, part_name("geometry", i, geometries[i].name)));
     for (std::size_t i = 0; i < textures.size(); ++i)
         validate_texture(textures[i], Complaint(where, part_name("texture", i, textures[i].name)));
     for (std::size_t i = 0; i < materials.size(); ++i)

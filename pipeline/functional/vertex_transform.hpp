@@ -105,13 +105,18 @@ inline glm::vec4 to_clip(const glm::mat4& matrix, const glm::vec4& position) {
     return result;
 }
 
-/// The whole vertex: transform, classify and, where no clipping is needed, project.
-inline ScreenVertex transform_vertex(const glm::mat4& matrix, const Viewport& viewport, const glm::vec4& position) {
+/// A vertex in clip space: classified and, where no clipping is needed, projected.
+inline ScreenVertex place_vertex(const Viewport& viewport, const glm::vec4& clip) {
     ScreenVertex vertex;
-    vertex.clip = to_clip(matrix, position);
+    vertex.clip = clip;
     vertex.outside = viewport.outcode(vertex.clip);
     if ((vertex.outside & (outside::must_clip | outside::not_finite)) == 0) viewport.project(vertex);
     return vertex;
+}
+
+/// The whole vertex.
+inline ScreenVertex transform_vertex(const glm::mat4& matrix, const Viewport& viewport, const glm::vec4& position) {
+    return place_vertex(viewport, to_clip(matrix, position));
 }
 
 } // namespace pipeline

@@ -119,6 +119,8 @@ class GeometryFront {
 
     /// What the vertex shaders of the passes from now on read; `needs` of the constructor before.
     void read(const Needs& needs) { vertex_fetch_.read(needs); }
+    /// Between passes.
+    void drop_cached() { vertex_fetch_.drop_cached(); }
     /// Begins a pass at the next clock edge; then call Simulation::run(). `draws` is the list that DrawRange::draw
     /// counts (and to which memory traffic is booked); `ranges`, some of stream.draws in order, or all of them, is what
     /// to draw. Everything must stay unchanged until the run ends.

@@ -80,6 +80,8 @@ class VertexFetch final : public sim::Component {
     const Params& params() const { return params_; }
     /// What the shaders of the passes from now on read; between passes.
     void read(const Needs& needs) { needs_ = needs; }
+    /// Empties the pre-transform cache; between passes.
+    void drop_cached() { cache_.clear(); }
     /// Bytes requested, by draw; draws not seen may be missing at the end.
     const std::vector<std::uint64_t>& draw_bytes() const { return draw_bytes_; }
 

@@ -1,7 +1,10 @@
-// The reader of draw traces, with what is said of a faulty one, and the frame of what it read. Hashes and checks would
+// The reader of draw traces, with what is said of a faulty one, and the frame of what it read, or what a recording
+// names. Hashes and checks would
 // stop nearly every input at once, so the bytes are the contents of chunks: type, length (3 bytes), content, and so on.
 #include "tests/fuzz/expect_input_error.hpp"
 #include "tests/fuzz/memory_file.hpp"
+#include "traces/recording/cut.hpp"
+#include "traces/recording/recording_check.hpp"
 #include "traces/rtrace/chunk.hpp"
 #include "traces/rtrace/little_endian.hpp"
 #include "traces/trace.hpp"
@@ -44,7 +47,13 @@ class File {
 
 void read(const std::uint8_t* bytes, std::size_t size) {
     const fuzz::MemoryFile file(bytes, size);
-    fuzz::expect_result_or_input_error([&] { traces::frame_of(traces::read_trace(file.path())); });
+    fuzz::expect_result_or_input_error([&] {
+        const traces::Trace trace = traces::read_trace(file.path());
+        if (trace.recording)
+            traces::check_recording(traces::compact(*trace.recording), "compacted");
+        else
+            traces::frame_of(trace);
+    });
     fuzz::expect_result_or_input_error([&] { traces::trace_faults(file.path()); });
 }
 

@@ -1,5 +1,6 @@
 #include "tests/support/mesa_shaders.hpp"
 
+#include "tests/oracle/mesa_texture_upload.hpp"
 #include "tests/support/oracle_textures.hpp"
 
 #if ROPSIM_HAVE_EGL
@@ -111,14 +112,16 @@ constexpr std::array<GlType, 25> gl_types{{
 struct SamplerType {
     GLenum type, target;
 };
-constexpr std::array<SamplerType, 8> samplers{{{GL_SAMPLER_1D, GL_TEXTURE_1D},
-                                               {GL_SAMPLER_2D, GL_TEXTURE_2D},
-                                               {GL_SAMPLER_3D, GL_TEXTURE_3D},
-                                               {GL_SAMPLER_CUBE, GL_TEXTURE_CUBE_MAP},
-                                               {GL_SAMPLER_2D_ARRAY, GL_TEXTURE_2D_ARRAY},
-                                               {GL_SAMPLER_2D_RECT, GL_TEXTURE_RECTANGLE},
-                                               {GL_SAMPLER_BUFFER, GL_TEXTURE_BUFFER},
-                                               {GL_SAMPLER_2D_SHADOW, GL_TEXTURE_2D}}};
+constexpr std::array<SamplerType, 10> samplers{{{GL_SAMPLER_1D, GL_TEXTURE_1D},
+                                                {GL_SAMPLER_2D, GL_TEXTURE_2D},
+                                                {GL_SAMPLER_3D, GL_TEXTURE_3D},
+                                                {GL_SAMPLER_CUBE, GL_TEXTURE_CUBE_MAP},
+                                                {GL_SAMPLER_2D_ARRAY, GL_TEXTURE_2D_ARRAY},
+                                                {GL_SAMPLER_2D_RECT, GL_TEXTURE_RECTANGLE},
+                                                {GL_SAMPLER_BUFFER, GL_TEXTURE_BUFFER},
+                                                {GL_SAMPLER_2D_SHADOW, GL_TEXTURE_2D},
+                                                {GL_SAMPLER_CUBE_SHADOW, GL_TEXTURE_CUBE_MAP},
+                                                {GL_UNSIGNED_INT_SAMPLER_2D, GL_TEXTURE_2D}}};
 
 class LlvmpipeShaders : public MesaShaders {
   public:
@@ -178,6 +181,18 @@ class LlvmpipeShaders : public MesaShaders {
         return picture;
     }
 
+    void set_texture(const MesaTexture* texture) override { texture_ = texture; }
+
+    std::vector<std::array<std::uint8_t, 4>> decoded(const MesaTexture& texture) override {
+        const CurrentContext current(display_, context_);
+        const GLuint name = upload_texture(GL_TEXTURE_2D, texture);
+        std::vector<std::array<std::uint8_t, 4>> texels(std::size_t{texture.surface.width} * texture.surface.height);
+        glGetTexImage(GL_TEXTURE_2D, 0, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
+        glDeleteTextures(1, &name);
+        if (glGetError() != GL_NO_ERROR) throw std::runtime_error("the OpenGL reference reports an error");
+        return texels;
+    }
+
   private:
     ShaderPicture render() const {
         ShaderPicture picture;
@@ -192,9 +207,9 @@ class LlvmpipeShaders : public MesaShaders {
         return picture;
     }
 
-    static void set_uniforms(GLuint program, const std::function<float(const ActiveUniform&, std::uint32_t)>& value,
-                             const std::function<std::uint32_t(const ActiveUniform&)>& unit,
-                             std::vector<GLuint>& textures, std::vector<GLuint>& buffers) {
+    void set_uniforms(GLuint program, const std::function<float(const ActiveUniform&, std::uint32_t)>& value,
+                      const std::function<std::uint32_t(const ActiveUniform&)>& unit, std::vector<GLuint>& textures,
+                      std::vector<GLuint>& buffers) const {
         GLint count = 0;
         glGetProgramiv(program, GL_ACTIVE_UNIFORMS, &count);
         for (GLuint i = 0; i < static_cast<GLuint>(count); ++i) {
@@ -258,8 +273,8 @@ class LlvmpipeShaders : public MesaShaders {
         }
     }
 
-    static void bind_texture(const SamplerType& sampler, GLint location, std::uint32_t elements, std::uint32_t unit,
-                             std::vector<GLuint>& textures, std::vector<GLuint>& buffers) {
+    void bind_texture(const SamplerType& sampler, GLint location, std::uint32_t elements, std::uint32_t unit,
+                      std::vector<GLuint>& textures, std::vector<GLuint>& buffers) const {
         constexpr GLsizei n = oracle_texture_size;
         std::vector<std::array<float, 4>> texels(std::size_t{n} * n * n);
         for (std::uint32_t i = 0; i < texels.size(); ++i)
@@ -267,6 +282,10 @@ class LlvmpipeShaders : public MesaShaders {
         const std::vector<GLint> units(elements, static_cast<GLint>(unit)); // one texture for all of an array
         glUniform1iv(location, static_cast<GLsizei>(elements), units.data());
         glActiveTexture(GL_TEXTURE0 + unit);
+        if (texture_ != nullptr) {
+            textures.push_back(upload_texture(sampler.target, *texture_));
+            return;
+        }
         textures.push_back(0);
         glGenTextures(1, &textures.back());
         const GLenum target = sampler.target;
@@ -329,6 +348,7 @@ class LlvmpipeShaders : public MesaShaders {
     EGLDisplay display_;
     EGLContext context_;
     GLuint corners_ = 0, vertex_array_ = 0, framebuffer_ = 0, colour_ = 0;
+    const MesaTexture* texture_ = nullptr;
 };
 
 } // namespace

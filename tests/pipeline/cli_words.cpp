@@ -96,7 +96,7 @@ TEST(CliWords, CASE_F5_NotesReachTheTerminal) {
     }
 }
 
-TEST(CliWords, CASE_F9_WrongPixelsNameTheirReason) {
+TEST(CliWords, CASE_F9_LongWrongPixelsNameTheirReason) {
     struct Case {
         std::vector<std::string> settings;
         std::string reason, words;

@@ -283,7 +283,8 @@ TEST(DeferredExtremes, S003_E18_WhatLiesBesideThePictureIsItsEdge) {
                     const int column = std::clamp(x + offset.x, 0, 63), row = std::clamp(y + offset.y, 0, 63);
                     const int opaque_row = interlaced && row % 2 == 1 ? row - 1 : row;
                     const glm::ivec3 seen(behind_pane(ramp(column)), behind_pane(ramp(opaque_row)), 0);
-                    ASSERT_EQ(pixel(replay, x, y), seen) << method << ' ' << x << ' ' << y << ' ' << offset.x;
+                    ASSERT_EQ(pixel(replay, static_cast<std::size_t>(x), static_cast<std::size_t>(y)), seen)
+                        << method << ' ' << x << ' ' << y << ' ' << offset.x;
                 }
         }
     }

@@ -86,7 +86,7 @@ TEST(EqualReference, K3_OnEveryGeneratorWithColours) {
     }
 }
 
-TEST(EqualReference, K3_OnEveryGeneratorWithDepthsAlone) {
+TEST(EqualReference, K3_LongOnEveryGeneratorWithDepthsAlone) {
     for (const std::string& scene : generated_scenes) {
         const Replay replay(scene, {.width = 64, .height = 64, .knobs = {"entry=z", "k=16"}});
         for (const std::string& design : protected_designs_of(replay)) {
@@ -123,7 +123,7 @@ TEST(EqualReference, K3_ForEqualDepthsOfDifferentColours) {
     }
 }
 
-TEST(EqualReference, K3_ScoreboardForEveryOptionThatProtects) {
+TEST(EqualReference, K3_LongScoreboardForEveryOptionThatProtects) {
     for (const char* granularity : {"pixel", "quad", "tile4", "tile8", "tile16"})
         for (const int entries : {0, 1, 64, 1000})
             expect_reference_of_both("scoreboard", {fmt::format("scoreboard.granularity={}", granularity),
@@ -296,7 +296,7 @@ TEST(EqualReference, K3_LongOnRealScenesWithTransparentMaterials) {
     expect_reference_on_real_scenes({"transparent=materials"});
 }
 
-TEST(EqualReference, OpaqueWorkloadIsTheReferenceInEveryDesign) {
+TEST(EqualReference, LongOpaqueWorkloadIsTheReferenceInEveryDesign) {
     for (const char* format : {"d16", "d24", "d32f"}) {
         for (const char* scene :
              {"gen:blob?triangles=6000&order=random", "gen:discs?n=200&overlap=10&width=64&height=64",

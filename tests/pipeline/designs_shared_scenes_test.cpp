@@ -62,7 +62,8 @@ void expect_reference(const Replay& replay, const std::string& place) {
         EXPECT_EQ(run.hazards.total(), 0U);
         EXPECT_EQ(run.unexplained_pixels(), 0U);
         if (!support::holds_everything(design)) {
-            EXPECT_LE(run.wrong_pixels, run.overflow_pixels);
+            // A silhouette is seen in the pixels beside it, too.
+            EXPECT_LE(run.wrong_pixels - run.wrong_because.inputs, run.overflow_pixels);
             continue;
         }
         EXPECT_EQ(run.lost_fragments, 0U);

@@ -76,7 +76,7 @@ TEST(GeometryFeedLong, G3DrawsAboveAMillionVerticesAreSlowWhenIndexed) {
     EXPECT_NEAR(rate(100'000, 0, {"unindex"}) / rate(300'000, 0, {"unindex"}), 1.0, 0.03);
 }
 
-TEST(GeometryFeed, G3TheThreeExplanationsOfTheCliffDifferWhereTheyShould) {
+TEST(GeometryFeed, G3LongTheThreeExplanationsOfTheCliffDifferWhereTheyShould) {
     // 1.05M + vertices; 12 bytes each exceed 12 MB, too. In 24 draws neither limit is met.
     const std::string large = grass(152'000, "none"), cut = grass(152'000, "none", 6'400);
     const auto slower = [](const std::string& cliff, const std::string& scene) {
@@ -128,7 +128,7 @@ void expect_batch_curves(Fidelity fidelity) {
 
 } // namespace
 
-TEST(GeometryFeed, G4BatchSweepEstimated) { expect_batch_curves(Fidelity::estimate); }
+TEST(GeometryFeed, G4LongBatchSweepEstimated) { expect_batch_curves(Fidelity::estimate); }
 TEST(GeometryFeedLong, G4BatchSweepDetailed) { expect_batch_curves(Fidelity::detailed); }
 
 TEST(GeometryFeedLong, G5TwoRowsOfT32PredictTheOtherTwo) {
@@ -145,7 +145,7 @@ TEST(GeometryFeedLong, G5TwoRowsOfT32PredictTheOtherTwo) {
     }
 }
 
-TEST(GeometryFeed, G6ShortPositionsOnBothCards) {
+TEST(GeometryFeed, G6LongShortPositionsOnBothCards) {
     const std::vector<std::string> floats{"batch?triangles=1000000&vertices=0&index=u32"};
     const std::vector<std::string> shorts{floats[0], "quantise"};
     const std::string happy = "gen:blob?triangles=1087716&order=voxels&attributes=none";

@@ -152,7 +152,7 @@ TEST(GeometryReportsLong, G8InterleavedIsFasterForEveryNumberOfAttributesAndGain
     }
 }
 
-TEST(GeometryReports, G3TheDropOfTheFigureIsAPenaltyAndTheX800HasNone) {
+TEST(GeometryReports, G3LongTheDropOfTheFigureIsAPenaltyAndTheX800HasNone) {
     const auto g70 = figures_of("g70", "F3.1"), r420 = figures_of("r420", "F3.1");
     const std::string drop = "F3.1 vertices/s of 0.7M over 2.1M, normals";
     EXPECT_NEAR(g70.at(drop).model, 4.44, 0.444);
@@ -218,7 +218,7 @@ TEST(GeometryReports, CalibratedNumbersOfGpuFilesAreThoseOfThePlan) {
     }
 }
 
-TEST(GeometryReports, CalibrationFindsTheNumbersOfTheFile) {
+TEST(GeometryReports, LongCalibrationFindsTheNumbersOfTheFile) {
     const auto found = reports::calibrate_geometry({"rv350"}, quick());
     ASSERT_EQ(found.size(), 1U);
     ASSERT_EQ(found[0].numbers.size(), 3U);

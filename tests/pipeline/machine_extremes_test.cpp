@@ -87,7 +87,7 @@ TEST(Extremes, TrianglesTooSmallForAnyPixelCentre) {
     EXPECT_EQ(counter(replay.run("blender").stages, "rasterizer/counters/triangles_without_quads"), 100U);
 }
 
-TEST(Extremes, OddViewports) {
+TEST(Extremes, LongOddViewports) {
     for (const auto& [width, height] :
          {std::pair(1U, 1U), {3U, 5U}, {5U, 3U}, {1U, 64U}, {64U, 1U}, {7U, 7U}, {17U, 33U}, {63U, 65U}}) {
         SCOPED_TRACE(fmt::format("{}x{}", width, height));
@@ -106,7 +106,7 @@ TEST(Extremes, OddViewports) {
     }
 }
 
-TEST(Extremes, ManyCoincidentFragmentsOfEqualDepth) {
+TEST(Extremes, LongManyCoincidentFragmentsOfEqualDepth) {
     std::vector<support::ScreenTriangle> triangles(80, {{0, 0, 0.5F}, {0, 32, 0.5F}, {32, 0, 0.5F}});
     for (const std::uint32_t k : {1U, 4U, 64U}) {
         const Replay replay(screen_scene(triangles), {16, 16, "transparency", "auto", {fmt::format("k={}", k)}});
@@ -151,7 +151,7 @@ TEST(Extremes, OpacityNoneAndFull) {
     }
 }
 
-TEST(Extremes, SixtyFourEntries) {
+TEST(Extremes, LongSixtyFourEntries) {
     for (const char* entry : {"entry=z", "entry=rgbz"}) {
         const Replay replay("gen:discs?n=100&overlap=70&width=12&height=12&segments=8",
                             {12, 12, "transparency", "auto", {"k=64", entry}});
@@ -161,7 +161,7 @@ TEST(Extremes, SixtyFourEntries) {
     }
 }
 
-TEST(Extremes, OneHugeTriangle) {
+TEST(Extremes, LongOneHugeTriangle) {
     for (const std::string& workload : both_workloads) {
         const Replay replay(
             screen_scene({{{-100'000, -100'000, 0.5F}, {-100'000, 300'000, 0.5F}, {300'000, -100'000, 0.5F}}}),
@@ -188,7 +188,7 @@ void expect_sparse_frame_fits(std::uint32_t side, std::uint64_t most_bytes_per_p
 
 } // namespace
 
-TEST(Extremes, LargeViewportWithOneSmallTriangle) { expect_sparse_frame_fits(1024, 700); }
+TEST(Extremes, LongLargeViewportWithOneSmallTriangle) { expect_sparse_frame_fits(1024, 700); }
 TEST(ExtremesLong, LargerViewportWithOneSmallTriangle) { expect_sparse_frame_fits(2048, 625); }
 
 TEST(Extremes, SmallestMachine) {

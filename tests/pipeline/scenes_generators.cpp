@@ -105,7 +105,7 @@ TEST(SceneGenerators, K4_RandomQuadsMissTheirPredecessorsAsOftenAsPredicted) {
     EXPECT_NEAR(share, 0.221, 0.02);
 }
 
-TEST(SceneGenerators, DiscsOverlapAsOftenAsAsked) {
+TEST(SceneGenerators, LongDiscsOverlapAsOftenAsAsked) {
     for (const double overlap : {1.0, 8.0, 40.0}) {
         const Drawn discs = draw("gen:discs?n=3000&overlap=" + std::to_string(overlap), 512, 512);
         EXPECT_NEAR(static_cast<double>(discs.stream.fragments) / (512.0 * 512.0), overlap, 0.01 * overlap);

@@ -28,7 +28,7 @@ AccuracyRequest bumpy_ball() {
 }
 
 // F5.3: a small bias leaves acne, a large one moves the shadows away from what throws them.
-TEST(SoftShadowsS7, UniformBiasTradesAcneForLostContact) {
+TEST(SoftShadowsS7, LongUniformBiasTradesAcneForLostContact) {
     AccuracyRequest request = bumpy_ball();
     request.comparison.workload_settings = {"bias=uniform", "map_size=512"};
     request.sweep = {{"uniform_bias", {"0.001", "0.01", "0.1", "0.3"}}};
@@ -43,7 +43,7 @@ TEST(SoftShadowsS7, UniformBiasTradesAcneForLostContact) {
     EXPECT_GT(points.back().error.too_bright, 2.0 * points.front().error.too_bright);
 }
 
-TEST(SoftShadowsS6, MoreLayersBleedLess) {
+TEST(SoftShadowsS6, LongMoreLayersBleedLess) {
     AccuracyRequest request = bumpy_ball();
     request.comparison.workload_settings = {"map_size=512"};
     request.sweep = {{"layers", {"1", "3"}}};
@@ -56,7 +56,7 @@ TEST(SoftShadowsS6, MoreLayersBleedLess) {
     }
 }
 
-TEST(Accuracy, HardShadowsOfManyLightsComeNearerInMoreTime) {
+TEST(Accuracy, LongHardShadowsOfManyLightsComeNearerInMoreTime) {
     AccuracyRequest request = bumpy_ball();
     request.comparison.workload_settings = {"map_size=256"};
     request.sweep = {{"method", {"hard"}}};

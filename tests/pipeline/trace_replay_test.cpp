@@ -4,6 +4,7 @@
 #include "reports/result.hpp"
 #include "tests/support/paths.hpp"
 #include "tests/support/program_run.hpp"
+#include "tests/support/recordings.hpp"
 #include "tests/support/schema.hpp"
 #include "traces/trace.hpp"
 
@@ -209,6 +210,44 @@ TEST(TraceReplay, SubcommandsSayWhatATraceIs) {
     EXPECT_NE(run_program({"replay", b, "--set", "workload.k=2"}).error.find("a trace has its own"), std::string::npos);
     EXPECT_EQ(run_program({"trace", "inof", a}).status, 2);
     EXPECT_EQ(run_program({"trace", "diff", a}).status, 2);
+    const auto cut = run_program({"trace", "cut", b, "--frames", "0:1", "-o", a});
+    EXPECT_EQ(cut.status, 1);
+    EXPECT_NE(cut.error.find("expected recorded frames to cut, got a captured one"), std::string::npos) << cut.error;
+    EXPECT_EQ(run_program({"trace", "info", b, "--frames", "0:1"}).status, 2);
+}
+
+TEST(TraceReplay, SubcommandsSayWhatARecordedTraceIs) {
+    const TemporaryFolder folder;
+    const std::string a = (folder.path() / "a.rtrace").string(), b = (folder.path() / "b.rtrace").string();
+    traces::write_trace(support::recorded_trace(support::rich_recording()), a);
+    const auto info = run_program({"trace", "info", a});
+    EXPECT_EQ(info.status, 0) << info.error;
+    for (const char* part :
+         {"a.rtrace: 2 frames of 118 draws, ", "recorded from: a program", "frame 7: 16 x 12, 18 draws in ",
+          ", 2 clears, 1 copy, ", "frame 9: ", "surfaces r8: ", "2 programs, 2 textures",
+          "not recorded: glPolygonMode (3 times)", "vertex formats: ", "FRAM", "OMIT"})
+        EXPECT_NE(info.out.find(part), std::string::npos) << part << "\n" << info.out;
+    const auto document = run_program({"trace", "info", a, "--json"});
+    const json facts = json::parse(document.out);
+    EXPECT_EQ(facts["frames"][1]["draws"], 100);
+    EXPECT_EQ(facts["frames"][1]["passes"], 1);
+    EXPECT_EQ(facts["frames"][1]["vertices"], 600);
+    EXPECT_EQ(facts["frames"][1]["primitives"], 200);
+    EXPECT_EQ(facts["not_recorded"][0]["times"], 3);
+    EXPECT_EQ(run_program({"trace", "validate", a}).out, "");
+
+    const auto cut = run_program({"trace", "cut", a, "--frames", "9:10", "--draws", "10:12", "-o", b});
+    EXPECT_EQ(cut.status, 0) << cut.error;
+    EXPECT_NE(cut.out.find("b.rtrace: 1 frame of 2 draws, 4 primitives"), std::string::npos) << cut.out;
+    EXPECT_EQ(run_program({"trace", "validate", b}).status, 0);
+    EXPECT_EQ(run_program({"trace", "diff", a, b}).status, 1);
+    const auto none = run_program({"trace", "cut", a, "--frames", "3:4", "-o", b});
+    EXPECT_EQ(none.status, 1);
+    EXPECT_NE(none.error.find("a.rtrace: expected frames within 7:10, at least one, got 3:4"), std::string::npos)
+        << none.error;
+    EXPECT_EQ(run_program({"trace", "cut", a, "--frames", "3", "-o", b}).status, 2);
+    EXPECT_EQ(run_program({"trace", "cut", a, "-o", b}).status, 2);
+    EXPECT_EQ(run_program({"trace", "cut", a, "--frames", "7:8"}).status, 2);
 }
 
 } // namespace trace_replay_test

@@ -222,7 +222,7 @@ struct SharedScene {
 };
 
 // Textures, alpha tests, mirrored and repeated nodes, opaque surfaces behind transparent ones.
-TEST_F(TruthTest, SharedScenesEqualTheirFrames) {
+TEST_F(TruthTest, LongSharedScenesEqualTheirFrames) {
     const std::vector<SharedScene> scenes{
         {"suzanne/Suzanne.gltf", {"k=32"}},
         {"stanford_bunny/stanford_bunny.glb", {"k=32"}},

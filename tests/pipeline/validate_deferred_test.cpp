@@ -154,18 +154,18 @@ TEST_F(DeferredModel, S003_D3_RefractionCostsTheSameForAnyNumberOfLights) {
     EXPECT_GT(more("T4.2 on", "T4.2 off", 0), 1.1 * two);
 }
 
-TEST_F(DeferredModel, S003_D4_TransparentShadowsCostMoreForEachLight) {
+TEST_F(DeferredModel, S003_D4_LongTransparentShadowsCostMoreForEachLight) {
     const double two = more("T4.3 transparent", "T4.3 opaque", 2), four = more("T4.3 transparent", "T4.3 opaque", 4);
     EXPECT_GT(two, 0);
     EXPECT_GT(four, 1.5 * two);
 }
 
-TEST_F(DeferredModel, S003_D5_ForwardRenderingTakesTheSameForEachLight) {
+TEST_F(DeferredModel, S003_D5_LongForwardRenderingTakesTheSameForEachLight) {
     const double first = slope("T4.5 fw", 2, 4), second = slope("T4.5 fw", 4, 8);
     EXPECT_NEAR(second / first, 1, 0.05);
 }
 
-TEST_F(DeferredModel, S003_D6_PeelingTakesTwiceTheTimeButForSharedShadows) {
+TEST_F(DeferredModel, S003_D6_LongPeelingTakesTwiceTheTimeButForSharedShadows) {
     const double none = milliseconds("T4.5 dp", 2) / milliseconds("T4.5 pm", 2),
                  shadows = milliseconds("T4.4 dp", 2) / milliseconds("T4.4 pm", 2);
     EXPECT_GT(none, 1.70);
@@ -192,7 +192,7 @@ TEST(DeferredModelLong, MissesHaveTheirReasons) {
     }
 }
 
-TEST_F(DeferredModel, S003_D7_ForwardRenderingFallsBehindWithMoreLights) {
+TEST_F(DeferredModel, S003_D7_LongForwardRenderingFallsBehindWithMoreLights) {
     const auto ratio = [&](std::uint32_t lights) {
         return milliseconds("T4.5 fw", lights) / milliseconds("T4.5 pm", lights);
     };

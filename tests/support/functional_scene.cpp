@@ -80,7 +80,9 @@ std::vector<std::uint32_t> FunctionalScene::all_draws() const {
 
 pipeline::FragmentStream FunctionalScene::rasterize(const pipeline::FrontEndOptions& options) {
     resources.place();
-    resources.validate("scene");
+    const bool programs =
+        std::any_of(draws.begin(), draws.end(), [](const auto& draw) { return draw.program != nullptr; });
+    resources.validate("scene", programs ? pipeline::Positions::computed : pipeline::Positions::attribute);
     return pipeline::rasterize(resources, draws, all_draws(), view, options);
 }
 

@@ -1,6 +1,8 @@
 // Fragment shaders run by Mesa's llvmpipe over a picture, with inputs that are linear over it.
 #pragma once
 
+#include "traces/recording/recording.hpp"
+
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -34,6 +36,13 @@ struct ShaderPicture {
     std::vector<std::array<float, 4>> colour; ///< row 0 is the bottom row
 };
 
+/// A texture of a recording, with its sampler.
+struct MesaTexture {
+    traces::RecordedSurface surface;
+    traces::RecordedSampler sampler;
+    traces::TextureBinding binding; ///< swizzle and levels
+};
+
 class MesaShaders {
   public:
     static constexpr std::uint32_t size = 32;  ///< pixels along each side of the picture
@@ -50,6 +59,11 @@ class MesaShaders {
                                const std::function<float(const ActiveUniform&, std::uint32_t)>& value,
                                const std::function<float(const ActiveBlock&, std::uint32_t)>& block,
                                const std::function<std::uint32_t(const ActiveUniform&)>& unit) = 0;
+
+    /// What all samplers read from now on in place of numbers that follow from their place; null: those again.
+    virtual void set_texture(const MesaTexture* texture) = 0;
+    /// Level 0 of a texture as OpenGL hands it back, four bytes a texel.
+    virtual std::vector<std::array<std::uint8_t, 4>> decoded(const MesaTexture& texture) = 0;
 };
 
 } // namespace tests

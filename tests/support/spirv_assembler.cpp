@@ -13,7 +13,7 @@ constexpr std::uint32_t block_decoration = 2, array_stride = 6, built_in_decorat
 
 } // namespace
 
-SpirvAssembler::SpirvAssembler() : std450_(id()), main_(id()), entry_(id()) {}
+SpirvAssembler::SpirvAssembler(Stage stage) : stage_(stage), std450_(id()), main_(id()), entry_(id()) {}
 
 void SpirvAssembler::put(Words& to, Op op, const Words& operands) {
     to.push_back(static_cast<std::uint32_t>(operands.size() + 1) << 16U | static_cast<std::uint32_t>(op));
@@ -184,7 +184,7 @@ void SpirvAssembler::end_function() {
 }
 
 SpirvAssembler::Words SpirvAssembler::module(bool returns) const {
-    constexpr std::uint32_t magic = 0x07230203, fragment = 4, logical = 0, glsl450 = 1, upper_left = 7, shader = 1;
+    constexpr std::uint32_t magic = 0x07230203, logical = 0, glsl450 = 1, upper_left = 7, shader = 1;
     SpirvAssembler copy = *this;
     const Id function_type = copy.type(Op::type_function, {copy.nothing()});
     const Id nothing = copy.nothing();
@@ -194,11 +194,11 @@ SpirvAssembler::Words SpirvAssembler::module(bool returns) const {
     add_text(import, "GLSL.std.450");
     put(module, Op::ext_inst_import, import);
     put(module, Op::memory_model, {logical, glsl450});
-    Words entry{fragment, main_};
+    Words entry{static_cast<std::uint32_t>(stage_), main_};
     add_text(entry, "main");
     entry.insert(entry.end(), interface_.begin(), interface_.end());
     put(module, Op::entry_point, entry);
-    put(module, Op::execution_mode, {main_, upper_left});
+    if (stage_ == Stage::fragment) put(module, Op::execution_mode, {main_, upper_left});
     const auto add = [&](const Words& words) { module.insert(module.end(), words.begin(), words.end()); };
     add(copy.annotations_);
     add(copy.declarations_);
@@ -210,6 +210,22 @@ SpirvAssembler::Words SpirvAssembler::module(bool returns) const {
     put(module, Op::function_end, {});
     add(functions_);
     return module;
+}
+
+SpirvAssembler::Words SpirvAssembler::vertex_module() const {
+    Words words = module();
+    constexpr std::size_t head_words = 5;
+    for (std::size_t at = head_words; at < words.size();) {
+        const std::uint32_t length = words[at] >> 16U;
+        const auto op = static_cast<Op>(words[at] & 0xFFFFU);
+        const auto here = words.begin() + static_cast<std::ptrdiff_t>(at);
+        if (op == Op::entry_point) words[at + 1] = 0; // the model, SPIR-V specification, section 3.3
+        if (op == Op::execution_mode)
+            words.erase(here, here + length); // of fragment shaders only
+        else
+            at += length;
+    }
+    return words;
 }
 
 traces::spirv::Texels RecordedTextures::sample(const traces::spirv::TextureSample& call) {

@@ -1,4 +1,4 @@
-// SPIR-V modules by hand, for tests: one fragment shader whose main function is written instruction by instruction.
+// SPIR-V modules by hand, for tests: one shader whose main function is written instruction by instruction.
 #pragma once
 
 #include "traces/spirv/opcodes.hpp"
@@ -20,7 +20,8 @@ class SpirvAssembler {
     using Storage = traces::spirv::Storage;
     using Words = std::vector<std::uint32_t>;
 
-    SpirvAssembler();
+    enum class Stage : std::uint32_t { vertex = 0, fragment = 4 };
+    explicit SpirvAssembler(Stage stage = Stage::fragment);
 
     Id id() { return next_++; }
 
@@ -73,6 +74,8 @@ class SpirvAssembler {
     Id main() const { return main_; }
     /// The module; main returns at its end unless it ended by itself.
     Words module(bool returns = true) const;
+    /// The same as a vertex shader.
+    Words vertex_module() const;
 
   private:
     Id type(Op op, const Words& operands, bool typed = false);
@@ -82,6 +85,7 @@ class SpirvAssembler {
     static void put(Words& to, Op op, const Words& operands);
     static void add_text(Words& to, const std::string& text);
 
+    Stage stage_;
     Id next_ = 1;
     Id std450_, main_, entry_;
     Words annotations_, declarations_, locals_, main_body_, functions_, function_locals_;

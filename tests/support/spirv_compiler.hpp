@@ -1,5 +1,5 @@
-// GLSL to SPIR-V by glslang, as desktop OpenGL and without the rules that SPIR-V adds: names, plain uniforms and old
-// versions stay what they are. For oracles only; where glslang was not found, compile() says so.
+// A fragment shader as SPIR-V, not optimised and optimised. For oracles; where the module that compiles was not built,
+// `problem` says so.
 #pragma once
 
 #include <cstdint>
@@ -12,9 +12,6 @@ struct CompiledSpirv {
     std::vector<std::uint32_t> plain, optimised; ///< the latter by spirv-opt -O
     std::string problem;                         ///< of the compiler; "" when there is none
 };
-
-/// False where this was built without glslang.
-bool have_spirv_compiler();
 
 CompiledSpirv compile_fragment_shader(const std::string& source);
 

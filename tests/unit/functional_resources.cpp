@@ -65,6 +65,15 @@ TEST(Resources, ValidateNamesWhatIsWrong) {
                    [](Resources& r) { r.materials[0].base_colour.g = std::numeric_limits<float>::infinity(); });
 }
 
+TEST(Resources, VertexProgramsNeedNoPositions) {
+    Resources resources = good_resources();
+    resources.geometries[0].attributes[0].semantic = Semantic::generic;
+    EXPECT_THROW(resources.validate("box.glb"), sim::InputError);
+    EXPECT_NO_THROW(resources.validate("box.glb", Positions::computed));
+    resources.geometries[0].attributes[0].offset = 1;
+    EXPECT_THROW(resources.validate("box.glb", Positions::computed), sim::InputError);
+}
+
 TEST(Resources, PackedAttributesHaveFourComponentsInFourBytes) {
     const auto packed = [](Resources& r) -> VertexAttribute& {
         VertexAttribute& attribute = r.geometries[0].attributes[0];
@@ -81,8 +90,8 @@ TEST(Resources, PackedAttributesHaveFourComponentsInFourBytes) {
     expect_refused("stride of at least 4 bytes in position, not 3", [&](Resources& r) { packed(r).stride = 3; });
     expect_refused("a known component type, not 9",
                    [&](Resources& r) { packed(r).type = static_cast<ComponentType>(9); });
-    expect_refused("a known semantic, not 13",
-                   [](Resources& r) { r.geometries[0].attributes[1].semantic = static_cast<Semantic>(13); });
+    expect_refused("a known semantic, not 28",
+                   [](Resources& r) { r.geometries[0].attributes[1].semantic = static_cast<Semantic>(semantics); });
 }
 
 TEST(Resources, LengthsThatOverflowAreRefused) {

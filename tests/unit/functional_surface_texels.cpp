@@ -44,6 +44,7 @@ struct Channel {
 };
 
 double unorm8(std::uint32_t code) { return code / 255.0; }
+double unorm16(std::uint32_t code) { return code / 65535.0; }
 double unorm10(std::uint32_t code) { return code / 1023.0; }
 double unorm2(std::uint32_t code) { return code / 3.0; }
 /// OpenGL 4.5, section 2.3.4.3 and 2.3.4.4.
@@ -60,6 +61,8 @@ const std::array channels{
     Channel{SurfaceFormat::rg8, 1, 8, 255, unorm8},
     Channel{SurfaceFormat::rgba8, 2, 16, 255, unorm8},
     Channel{SurfaceFormat::srgb8a8, 3, 24, 255, unorm8},
+    Channel{SurfaceFormat::r16, 0, 0, 65535, unorm16},
+    Channel{SurfaceFormat::rg16, 1, 16, 65535, unorm16},
     Channel{SurfaceFormat::rgb10a2, 0, 0, 1023, unorm10},
     Channel{SurfaceFormat::rgb10a2, 1, 10, 1023, unorm10},
     Channel{SurfaceFormat::rgb10a2, 2, 20, 1023, unorm10},
@@ -172,7 +175,7 @@ TEST(SurfaceTexel, MissingChannelsReadZeroAndOne) {
     const glm::vec4 colour(0.25F, 0.5F, 0.75F, 0.5F);
     for (std::size_t i = 0; i < surface_formats.size(); ++i) {
         const auto format = static_cast<SurfaceFormat>(i);
-        if (!is_colour(format) || info_of(format).kind == ChannelKind::integer) continue;
+        if (!is_colour(format) || is_integer(format) || is_compressed(format)) continue;
         const glm::vec4 back = through_format(format, colour);
         for (int channel = info_of(format).channels; channel < 4; ++channel)
             EXPECT_EQ(back[channel], channel == 3 ? 1.0F : 0.0F) << info_of(format).name;
@@ -183,10 +186,11 @@ TEST(SurfaceTexel, MissingChannelsReadZeroAndOne) {
 TEST(SurfaceTexel, WritesTheBytesOfItsFormatAndNoMore) {
     for (std::size_t i = 0; i < surface_formats.size(); ++i) {
         const auto format = static_cast<SurfaceFormat>(i);
+        if (is_compressed(format)) continue;
         std::array<std::byte, 2 * largest_texel> bytes{};
         bytes.fill(std::byte{0xA5});
-        if (info_of(format).kind == ChannelKind::integer)
-            pack_integers(format, glm::uvec2(1, 2), bytes.data());
+        if (is_integer(format))
+            pack_integers(format, glm::uvec4(1, 2, 3, 4), bytes.data());
         else if (is_colour(format))
             pack_colour(format, glm::vec4(0.5F), bytes.data());
         else
@@ -198,12 +202,42 @@ TEST(SurfaceTexel, WritesTheBytesOfItsFormatAndNoMore) {
 TEST(SurfaceTexel, IntegersAreKeptWhole) {
     for (const std::uint32_t value : {0U, 1U, 0x7FFFFFFFU, 0x80000000U, 0xFFFFFFFFU}) {
         Bytes bytes{};
-        pack_integers(SurfaceFormat::rg32u, {value, ~value}, bytes.data());
-        EXPECT_EQ(unpack_integers(SurfaceFormat::rg32u, bytes.data()), glm::uvec2(value, ~value));
-        pack_integers(SurfaceFormat::r32u, {value, 7}, bytes.data());
-        EXPECT_EQ(unpack_integers(SurfaceFormat::r32u, bytes.data()), glm::uvec2(value, 0));
+        pack_integers(SurfaceFormat::rg32u, {value, ~value, 8, 9}, bytes.data());
+        EXPECT_EQ(unpack_integers(SurfaceFormat::rg32u, bytes.data()), glm::uvec4(value, ~value, 0, 1));
+        pack_integers(SurfaceFormat::r32u, {value, 7, 8, 9}, bytes.data());
+        EXPECT_EQ(unpack_integers(SurfaceFormat::r32u, bytes.data()), glm::uvec4(value, 0, 0, 1));
         EXPECT_EQ(unpack_texel(SurfaceFormat::r32u, bytes.data()).r, static_cast<float>(value));
+        EXPECT_EQ(unpack_texel(SurfaceFormat::r32i, bytes.data()).r,
+                  static_cast<float>(static_cast<std::int32_t>(value)));
     }
+}
+
+TEST(SurfaceTexel, NarrowIntegersHaveTheirSign) {
+    const auto kept = [](SurfaceFormat format, std::uint32_t value) {
+        Bytes bytes{};
+        pack_integers(format, glm::uvec4(value), bytes.data());
+        return unpack_integers(format, bytes.data());
+    };
+    constexpr std::uint32_t minus_one = ~0U;
+    EXPECT_EQ(kept(SurfaceFormat::rgba8i, minus_one), glm::uvec4(minus_one));
+    EXPECT_EQ(kept(SurfaceFormat::rgba8u, minus_one), glm::uvec4(255));
+    EXPECT_EQ(kept(SurfaceFormat::rg16i, 0x12348765U), glm::uvec4(0xFFFF8765U, 0xFFFF8765U, 0, 1));
+    EXPECT_EQ(kept(SurfaceFormat::r16u, 0x12348765U), glm::uvec4(0x8765U, 0, 0, 1));
+    Bytes bytes{};
+    pack_integers(SurfaceFormat::r16i, glm::uvec4(minus_one), bytes.data());
+    EXPECT_EQ(unpack_texel(SurfaceFormat::r16i, bytes.data()), glm::vec4(-1, 0, 0, 1));
+}
+
+// OpenGL 4.5, section 2.3.5.1: two codes stand for -1.
+TEST(SurfaceTexel, SignedNormalisedCodes) {
+    for (int code = -128; code <= 127; ++code) {
+        const std::byte texel{static_cast<std::uint8_t>(code)};
+        const float value = unpack_texel(SurfaceFormat::r8s, &texel).r;
+        EXPECT_EQ(value, code == -128 ? -1.0F : static_cast<float>(code) / 127.0F);
+        EXPECT_EQ(through_format(SurfaceFormat::rgba8s, glm::vec4(value)), glm::vec4(value));
+    }
+    EXPECT_EQ(through_format(SurfaceFormat::rg8s, {infinity, -infinity, 0, 0}), glm::vec4(1, -1, 0, 1));
+    EXPECT_EQ(through_format(SurfaceFormat::r8s, glm::vec4(not_a_number)).r, 0.0F);
 }
 
 TEST(SurfaceTexel, DepthAndStencilShareATexel) {

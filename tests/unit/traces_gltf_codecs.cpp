@@ -3,7 +3,7 @@
 #include "ropsim_build.hpp"
 #include "sim/check.hpp"
 #include "tests/support/scene_files.hpp"
-#include "traces/gltf/child_process.hpp"
+#include "traces/child_process.hpp"
 
 #include <cstdlib>
 #include <cstring>
@@ -168,7 +168,7 @@ TEST(GltfMeshopt, WhatIsNotAsTheFileSaysIsRefusedByName) {
 }
 
 TEST(GltfChildProcess, BringsBackWhatTheChildWroteOrWhyNot) {
-    using traces::gltf::in_child_process;
+    using traces::in_child_process;
     const auto good = in_child_process(3, [](std::span<unsigned char> out, std::span<char>) {
         std::memcpy(out.data(), "abc", 3);
         return 0;
@@ -181,9 +181,9 @@ TEST(GltfChildProcess, BringsBackWhatTheChildWroteOrWhyNot) {
     });
     EXPECT_EQ(told.failure, "no such thing");
     const auto crash = in_child_process(3, [](std::span<unsigned char>, std::span<char>) -> int { std::abort(); });
-    EXPECT_TRUE(crash.failure.starts_with("the decoder ended with signal 6")) << crash.failure;
+    EXPECT_TRUE(crash.failure.starts_with("the library ended with signal 6")) << crash.failure;
     const auto thrown = in_child_process(3, [](std::span<unsigned char>, std::span<char>) -> int { throw 1; });
-    EXPECT_EQ(thrown.failure, "the decoder failed");
+    EXPECT_EQ(thrown.failure, "the library failed");
 }
 
 // Two by two texels of red, green, blue and white, lossy.

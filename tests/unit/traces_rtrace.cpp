@@ -131,9 +131,9 @@ TEST_F(Rtrace, UnknownChunksAreSkippedOrRefusedByName) {
     std::vector<support::Chunk> chunks = support::chunks_in(write(support::rich_trace()));
     chunks.push_back({"INFO", Bytes(5), 0});
     EXPECT_EQ(support::refusal_of(support::file_of(chunks)), "");
-    chunks.back() = {"SURF", Bytes(5)};
+    chunks.back() = {"LATE", Bytes(5)};
     const std::string refusal = support::refusal_of(support::file_of(chunks));
-    EXPECT_NE(refusal.find("expected chunks that version 1 has, got a required 'SURF'"), std::string::npos) << refusal;
+    EXPECT_NE(refusal.find("expected chunks that version 1 has, got a required 'LATE'"), std::string::npos) << refusal;
 }
 
 TEST_F(Rtrace, WhatIsNotUtf8OrNotFiniteIsNotWritten) {

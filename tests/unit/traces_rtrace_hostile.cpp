@@ -3,6 +3,7 @@
 #include "sim/check.hpp"
 #include "tests/support/effort.hpp"
 #include "tests/support/program_run.hpp"
+#include "tests/support/recordings.hpp"
 #include "tests/support/trace_files.hpp"
 #include "traces/rtrace/chunk_reader.hpp"
 #include "traces/rtrace/little_endian.hpp"
@@ -22,15 +23,17 @@ using ropsim_test::TemporaryFolder;
 using support::Bytes;
 using support::Chunk;
 
-Bytes good_file() {
+traces::Trace recorded() { return support::recorded_trace(support::rich_recording()); }
+
+Bytes good_file(const traces::Trace& trace = support::rich_trace()) {
     const TemporaryFolder folder;
-    traces::write_trace(support::rich_trace(), folder.path() / "x.rtrace");
+    traces::write_trace(trace, folder.path() / "x.rtrace");
     return support::bytes_in(folder.path() / "x.rtrace");
 }
 
-std::vector<Chunk> good_chunks() {
+std::vector<Chunk> good_chunks(const traces::Trace& trace = support::rich_trace()) {
     const TemporaryFolder folder;
-    traces::write_trace(support::rich_trace(), folder.path() / "x.rtrace");
+    traces::write_trace(trace, folder.path() / "x.rtrace");
     return support::chunks_in(folder.path() / "x.rtrace");
 }
 
@@ -52,9 +55,8 @@ void expect_refusal_or(const std::string& good, const Bytes& bytes, const std::f
     }
 }
 
-void cut_everywhere(std::size_t step) {
+void cut_everywhere(const Bytes& file, std::size_t step) {
     const TemporaryFolder folder;
-    const Bytes file = good_file();
     for (std::size_t bytes = 0; bytes < file.size(); bytes += step) {
         const Bytes cut(file.begin(), file.begin() + static_cast<std::ptrdiff_t>(bytes));
         const std::string refusal = support::refusal_of(cut);
@@ -63,10 +65,9 @@ void cut_everywhere(std::size_t step) {
     }
 }
 
-void flip_everywhere(std::size_t step) {
+void flip_everywhere(const Bytes& file, std::size_t step) {
     const TemporaryFolder folder;
     const auto path = folder.path() / "x.rtrace";
-    const Bytes file = good_file();
     support::write_bytes(path, file);
     const std::string good = text_of(path);
     for (std::size_t bit = 0; bit < file.size() * 8; bit += step) {
@@ -76,10 +77,19 @@ void flip_everywhere(std::size_t step) {
     }
 }
 
-TEST(RtraceHostile, CutOffAnywhereItIsRefused) { cut_everywhere(tests::sanitized ? 97 : 7); }
-TEST(RtraceHostile, LongCutOffAtEveryByte) { cut_everywhere(1); }
-TEST(RtraceHostile, AFlippedBitIsFoundOrChangesNothing) { flip_everywhere(tests::sanitized ? 1009 : 101); }
-TEST(RtraceHostile, LongEveryBitFlipped) { flip_everywhere(1); }
+TEST(RtraceHostile, CutOffAnywhereItIsRefused) { cut_everywhere(good_file(), tests::sanitized ? 97 : 7); }
+TEST(RtraceHostile, LongCutOffAtEveryByte) { cut_everywhere(good_file(), 1); }
+TEST(RtraceHostile, AFlippedBitIsFoundOrChangesNothing) { flip_everywhere(good_file(), tests::sanitized ? 1009 : 101); }
+TEST(RtraceHostile, LongEveryBitFlipped) { flip_everywhere(good_file(), 1); }
+
+TEST(RtraceHostile, RecordedCutOffAnywhereItIsRefused) {
+    cut_everywhere(good_file(recorded()), tests::sanitized ? 503 : 37);
+}
+TEST(RtraceHostile, LongRecordedCutOffAtEveryByte) { cut_everywhere(good_file(recorded()), 1); }
+TEST(RtraceHostile, RecordedAFlippedBitIsFoundOrChangesNothing) {
+    flip_everywhere(good_file(recorded()), tests::sanitized ? 5003 : 503);
+}
+TEST(RtraceHostile, LongRecordedEveryBitFlipped) { flip_everywhere(good_file(recorded()), 1); }
 
 TEST(RtraceHostile, HeadsThatLieAreRefusedByPlace) {
     const Bytes file = good_file();
@@ -152,23 +162,26 @@ TEST(RtraceHostile, SizesAreHeldAgainstTheFileBeforeMemoryIsAskedFor) {
 
 TEST(RtraceHostile, CountsThatCannotBeAreRefused) {
     // The count of each list at the beginning of its chunk.
-    for (const rtrace::ChunkType type :
-         {rtrace::chunk::buffers, rtrace::chunk::geometries, rtrace::chunk::textures, rtrace::chunk::materials,
-          rtrace::chunk::draws, rtrace::chunk::cameras, rtrace::chunk::lights}) {
-        std::vector<Chunk> chunks = good_chunks();
-        const auto chunk =
-            std::find_if(chunks.begin(), chunks.end(), [&](const Chunk& one) { return one.type == type; });
-        rtrace::put_little<std::uint32_t>(chunk->content.data(), 0xFFFFFFFF);
-        const std::string refusal = support::refusal_of(support::file_of(chunks));
-        EXPECT_NE(refusal.find("records in the bytes that are left, got 4294967295"), std::string::npos)
-            << type.text() << refusal;
-    }
+    const auto expect_refusals = [](const std::vector<Chunk>& good, std::initializer_list<rtrace::ChunkType> types) {
+        for (const rtrace::ChunkType type : types) {
+            std::vector<Chunk> chunks = good;
+            const auto chunk =
+                std::find_if(chunks.begin(), chunks.end(), [&](const Chunk& one) { return one.type == type; });
+            rtrace::put_little<std::uint32_t>(chunk->content.data(), 0xFFFFFFFF);
+            const std::string refusal = support::refusal_of(support::file_of(chunks));
+            EXPECT_NE(refusal.find("records in the bytes that are left, got 4294967295"), std::string::npos)
+                << type.text() << refusal;
+        }
+    };
+    using namespace rtrace::chunk;
+    expect_refusals(good_chunks(), {buffers, geometries, textures, materials, draws, cameras, lights});
+    expect_refusals(good_chunks(recorded()), {buffers, geometries, surfaces, samplers, programs, values, bindings,
+                                              states, targets, frames, not_recorded});
 }
 
-void words_anywhere(std::size_t step) {
+void words_anywhere(const std::vector<Chunk>& good, std::size_t step) {
     constexpr std::array<std::uint32_t, 6> words{0,      1,          0x7F,
                                                  0xFFFF, 0x7FC00000, 0xFFFFFFFF}; // the fifth as a float: not a number
-    const std::vector<Chunk> good = good_chunks();
     std::size_t refused = 0, read = 0;
     for (std::size_t i = 0; i < good.size(); ++i)
         for (std::size_t at = 0; good[i].type != rtrace::chunk::blob && at + 4 <= good[i].content.size(); at += step)
@@ -183,8 +196,12 @@ void words_anywhere(std::size_t step) {
     EXPECT_GT(read, 5U); // a colour may be any
 }
 
-TEST(RtraceHostile, AnyWordOfATableMayBeAnything) { words_anywhere(tests::sanitized ? 97 : 19); }
-TEST(RtraceHostile, LongEveryWordOfEveryTableMayBeAnything) { words_anywhere(1); }
+TEST(RtraceHostile, AnyWordOfATableMayBeAnything) { words_anywhere(good_chunks(), tests::sanitized ? 97 : 19); }
+TEST(RtraceHostile, LongEveryWordOfEveryTableMayBeAnything) { words_anywhere(good_chunks(), 1); }
+TEST(RtraceHostile, RecordedAnyWordOfATableMayBeAnything) {
+    words_anywhere(good_chunks(recorded()), tests::sanitized ? 997 : 199);
+}
+TEST(RtraceHostile, LongRecordedManyWordsOfEveryTableMayBeAnything) { words_anywhere(good_chunks(recorded()), 5); }
 
 class Lie : public ::testing::Test {
   protected:

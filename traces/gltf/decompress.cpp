@@ -1,8 +1,8 @@
 #include "traces/gltf/decompress.hpp"
 
 #include "sim/check.hpp"
+#include "traces/child_process.hpp"
 #include "traces/draco_module/draco_module.h"
-#include "traces/gltf/child_process.hpp"
 #include "traces/meshopt_module/meshopt_module.h"
 
 namespace traces::gltf {

@@ -1,7 +1,7 @@
 #include "traces/gltf/images.hpp"
 
 #include "sim/check.hpp"
-#include "traces/gltf/child_process.hpp"
+#include "traces/child_process.hpp"
 #include "traces/texture_module/texture_module.h"
 
 #include <cstdint>

@@ -13,6 +13,7 @@
 #include "pipeline/draw.hpp"
 #include "pipeline/raster_state.hpp"
 #include "pipeline/surface_format.hpp"
+#include "pipeline/texture_lookup.hpp"
 
 #include <array>
 #include <cstddef>
@@ -43,23 +44,21 @@ struct RecordedSurface {
     /// The bytes that it holds when the first frame begins, by level: planes, rows, texels, without gaps; of
     /// block-compressed formats 4x4 blocks in their place. A level without bytes holds 0.
     std::vector<std::vector<std::byte>> levels = std::vector<std::vector<std::byte>>(1);
+
+    bool operator==(const RecordedSurface&) const = default;
 };
 
-/// Each channel that a shader sees is one of the surface's, or a constant.
-enum class Swizzle : std::uint8_t { red, green, blue, alpha, zero, one };
-
-struct RecordedSampler {
-    pipeline::Wrap wrap_u = pipeline::Wrap::repeat, wrap_v = pipeline::Wrap::repeat, wrap_w = pipeline::Wrap::repeat;
-    pipeline::Filter min_filter = pipeline::Filter::nearest_mip_linear, mag_filter = pipeline::Filter::linear;
-    glm::vec4 border{0.0F};
-    float lod_bias = 0.0F, least_lod = -1000.0F, most_lod = 1000.0F;
-    float anisotropy = 1.0F;                                   ///< most probes along the longer axis; 1: isotropic
-    bool compares = false;                                     ///< depth formats: gives 0 or 1
-    pipeline::Compare compare = pipeline::Compare::less_equal; ///< reference OP texel
-    bool seamless = true;                                      ///< filters of cubes reach over edges
-
-    bool operator==(const RecordedSampler&) const = default;
+struct LevelSize {
+    std::uint32_t width = 1, height = 1;
+    std::uint32_t planes = 1; ///< of a volume its slices
 };
+LevelSize level_size(const RecordedSurface& surface, std::uint32_t level);
+
+/// Of a level that has any.
+std::uint64_t level_bytes(const RecordedSurface& surface, std::uint32_t level);
+
+using pipeline::Swizzle;
+using RecordedSampler = pipeline::SamplerState;
 
 /// A texture variable of a shader, with what it reads.
 struct TextureBinding {
@@ -76,6 +75,8 @@ struct TextureBinding {
 struct ShaderInputSource {
     std::string variable;
     std::uint32_t first = 0; ///< pipeline::Semantic of its first column; the others follow
+
+    bool operator==(const ShaderInputSource&) const = default;
 };
 
 /// A vertex and a fragment shader as SPIR-V, and how they are fed.
@@ -83,6 +84,8 @@ struct RecordedProgram {
     std::string name;
     std::vector<std::uint32_t> vertex, fragment; ///< modules; no fragment shader: depth and stencil alone are drawn
     std::vector<ShaderInputSource> inputs;
+
+    bool operator==(const RecordedProgram&) const = default;
 };
 
 /// A uniform by the name that GLSL gives it ("lights[2].position"), in 32-bit words as a scalar, vector or matrix by
@@ -114,14 +117,18 @@ struct TargetSet {
 struct ConstantInput {
     std::string variable;
     glm::vec4 value{0.0F, 0.0F, 0.0F, 1.0F};
+
+    bool operator==(const ConstantInput&) const = default;
 };
 
 struct RecordedDraw {
     std::string name;           ///< for people: what the application called, and where
     std::uint32_t targets = 0;  ///< of Recording::targets
     std::uint32_t geometry = 0; ///< of Recording::resources; attributes by semantic, see ShaderInputSource
-    std::uint32_t instances = 1, first_instance = 0;
-    std::int32_t base_vertex = 0; ///< was added to each index already; what the shader is told
+    std::uint32_t instances = 1;
+    /// What the shader is told; they were added to indices, and to the elements of attributes with a divisor, already.
+    std::uint32_t first_instance = 0;
+    std::int32_t base_vertex = 0;
     std::uint32_t program = 0;
     std::uint32_t vertex_values = 0, fragment_values = 0; ///< of Recording::values
     std::uint32_t bindings = 0;                           ///< of Recording::bindings
@@ -129,9 +136,11 @@ struct RecordedDraw {
     std::vector<ConstantInput> constants;
     pipeline::Compare alpha_test = pipeline::Compare::always; ///< of output 0's alpha; what fails is discarded
     float alpha_reference = 0.0F;
+
+    bool operator==(const RecordedDraw&) const = default;
 };
 
-/// Sets pixels of targets without a draw.
+/// Sets pixels of targets, all of which are there, without a draw.
 struct RecordedClear {
     std::string name;
     std::uint32_t targets = 0;
@@ -142,6 +151,8 @@ struct RecordedClear {
     std::optional<std::uint8_t> stencil;
     std::uint8_t stencil_mask = 0xFF;
     std::optional<pipeline::PixelRectangle> scissor;
+
+    bool operator==(const RecordedClear&) const = default;
 };
 
 /// Copies a rectangle of texels; formats convert as a draw would.
@@ -150,20 +161,27 @@ struct RecordedCopy {
     TargetSet::Target from, to;
     pipeline::PixelRectangle rectangle; ///< of the source
     std::int32_t to_x = 0, to_y = 0;
+    bool mirrored = false; ///< the first row of the source becomes the last one
+
+    bool operator==(const RecordedCopy&) const = default;
 };
 
 using RecordedCommand = std::variant<RecordedDraw, RecordedClear, RecordedCopy>;
 
 struct RecordedFrame {
-    std::uint32_t number = 0; ///< of the application's frames, from 0
+    std::uint32_t number = 0; ///< of the application's frames, from 0; they grow
     std::uint32_t shown = 0;  ///< of Recording::targets: whose first colour the frame is for
     std::vector<RecordedCommand> commands;
+
+    bool operator==(const RecordedFrame&) const = default;
 };
 
 /// What was called and is not in the recording, or only in part.
 struct NotRecorded {
     std::string call;
     std::uint64_t times = 0;
+
+    bool operator==(const NotRecorded&) const = default;
 };
 
 struct Recording {

@@ -1,6 +1,7 @@
 // A scene and a rendering method as a trace, and back to a frame.
 #include "sim/check.hpp"
 #include "traces/camera.hpp"
+#include "traces/recording/lower.hpp"
 #include "traces/trace.hpp"
 
 #include "models/programs/language/user_program.hpp"
@@ -64,7 +65,16 @@ Trace capture(const CaptureRequest& request) {
     return trace;
 }
 
-pipeline::Frame frame_of(const Trace& trace) {
+pipeline::Frame frame_of(const Trace& trace, const ReplayOptions& replay) {
+    if (trace.recording) {
+        LowerOptions options = LowerOptions::of(*trace.recording, replay.frames, replay.kbuffer, replay.k);
+        options.cold = replay.cold;
+        return lower(*trace.recording, options, trace.scene.name);
+    }
+    if (!replay.frames.empty() || !replay.kbuffer.empty())
+        throw sim::InputError(
+            fmt::format("{}: {}: expected a recording of an application's frames, got a captured frame",
+                        replay.frames.empty() ? "--kbuffer" : "--frames", trace.scene.name));
     const WorkloadOptions options = options_of(trace);
     refuse_program_files(workload_named(trace.frame.workload), options, trace.scene.name);
     return build_frame(trace.scene, trace.frame.view, trace.frame.workload, options);

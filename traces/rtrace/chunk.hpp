@@ -21,7 +21,8 @@ inline constexpr std::array<std::uint8_t, 8> magic{0x89, 'R', 'T', 'R', 'C', '\r
 struct ContentName {
     std::array<std::uint8_t, 16> bytes{};
 
-    auto operator<=>(const ContentName&) const = default;
+    bool operator==(const ContentName&) const = default;
+    bool operator<(const ContentName& other) const { return bytes < other.bytes; }
     std::string hex() const;
 };
 
@@ -32,14 +33,17 @@ struct ChunkType {
 
     constexpr ChunkType() = default;
     constexpr ChunkType(const char (&text)[5]) : letters{text[0], text[1], text[2], text[3]} {}
-    auto operator<=>(const ChunkType&) const = default;
+    bool operator==(const ChunkType&) const = default;
+    bool operator<(const ChunkType& other) const { return letters < other.letters; }
     std::string text() const; ///< "GEOM"; letters that cannot be printed are '?'
 };
 
 namespace chunk {
 inline constexpr ChunkType metadata = "META", scene = "SCEN", buffers = "BUFS", geometries = "GEOM", textures = "TEXS",
                            materials = "MATS", draws = "DRAW", cameras = "CAMS", lights = "LITE", captured = "CAPT",
-                           blob = "BLOB", done = "DONE";
+                           surfaces = "SURF", samplers = "SAMP", programs = "SHDR", values = "VARS", bindings = "BIND",
+                           states = "RAST", targets = "TARG", frames = "FRAM", not_recorded = "OMIT", blob = "BLOB",
+                           done = "DONE";
 } // namespace chunk
 
 /// Bits of ChunkHead::flags; the others are 0.

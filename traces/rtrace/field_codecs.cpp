@@ -73,15 +73,22 @@ void Encoder::code_number(std::string_view, std::uint8_t& code, std::span<const 
     put(code, 1);
 }
 
-std::size_t Encoder::count(std::string_view, std::size_t records, std::size_t) {
-    CHECK(records <= UINT32_MAX);
+void Encoder::words(std::string_view, std::vector<std::uint32_t>& values) {
+    CHECK(values.size() <= UINT32_MAX);
+    put(values.size(), 4);
+    for (const std::uint32_t value : values) put(value, 4);
+}
+
+std::size_t Encoder::count(std::string_view, std::size_t records, std::size_t, std::size_t most) {
+    CHECK(records <= most);
     put(records, 4);
     return records;
 }
 
 void Decoder::fail(std::string_view name, std::string_view expected) const {
     std::string path;
-    for (const auto& [kind, i] : path_) path += fmt::format("{} {} ", kind, i);
+    for (const Step& step : path_)
+        path += fmt::format("{} ", step.number ? fmt::format("{} {}", step.name, *step.number) : step.name);
     throw sim::InputError(fmt::format("{}: content byte {}: {}{}: expected {}", place_, field_, path, name, expected));
 }
 
@@ -140,9 +147,16 @@ void Decoder::code_number(std::string_view name, std::uint8_t& code, std::span<c
         fail(name, fmt::format("a code below {} ({}), got {}", names.size(), fmt::join(names, ", "), code));
 }
 
-std::size_t Decoder::count(std::string_view kind, std::size_t, std::size_t least_bytes) {
+void Decoder::words(std::string_view name, std::vector<std::uint32_t>& values) {
+    const auto bytes = take(name, 4 * get(name, 4));
+    values.resize(bytes.size() / 4);
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = get_little<std::uint32_t>(&bytes[4 * i]);
+}
+
+std::size_t Decoder::count(std::string_view kind, std::size_t, std::size_t least_bytes, std::size_t most) {
     const std::uint64_t records = get(kind, 4), room = (bytes_.size() - at_) / least_bytes;
     if (records > room) fail(kind, fmt::format("at most {} records in the bytes that are left, got {}", room, records));
+    if (records > most) fail(kind, fmt::format("at most {} records, got {}", most, records));
     return records;
 }
 

@@ -1,14 +1,15 @@
 #include "traces/rtrace/records.hpp"
 
+#include "traces/rtrace/codes.hpp"
+
+#include <fmt/format.h>
+
 namespace traces::rtrace {
 
 namespace {
 
 using pipeline::ComponentType;
-using pipeline::Filter;
-using pipeline::Semantic;
 using pipeline::Topology;
-using pipeline::Wrap;
 
 // The codes of the file: new ones go to the end.
 constexpr std::array<Code<Topology>, 7> topologies{{{Topology::triangles, "triangles"},
@@ -31,29 +32,8 @@ constexpr std::array<Code<ComponentType>, 9> component_types{{{ComponentType::f3
                                                               {ComponentType::u32, "u32"},
                                                               {ComponentType::s10_10_10_2, "s10_10_10_2"},
                                                               {ComponentType::u10_10_10_2, "u10_10_10_2"}}};
-constexpr std::array<Code<Semantic>, 13> attribute_semantics{{{Semantic::position, "position"},
-                                                              {Semantic::normal, "normal"},
-                                                              {Semantic::colour, "colour"},
-                                                              {Semantic::secondary_colour, "secondary colour"},
-                                                              {Semantic::texcoord0, "texcoord 0"},
-                                                              {Semantic::texcoord1, "texcoord 1"},
-                                                              {Semantic::texcoord2, "texcoord 2"},
-                                                              {Semantic::texcoord3, "texcoord 3"},
-                                                              {Semantic::texcoord4, "texcoord 4"},
-                                                              {Semantic::texcoord5, "texcoord 5"},
-                                                              {Semantic::texcoord6, "texcoord 6"},
-                                                              {Semantic::texcoord7, "texcoord 7"},
-                                                              {Semantic::generic, "generic"}}};
 enum class TexelFormat : std::uint8_t { rgba8 };
 constexpr std::array<Code<TexelFormat>, 1> texel_formats{{{TexelFormat::rgba8, "rgba8"}}};
-constexpr std::array<Code<Wrap>, 4> wraps{
-    {{Wrap::repeat, "repeat"}, {Wrap::clamp, "clamp"}, {Wrap::mirror, "mirror"}, {Wrap::border, "border"}}};
-constexpr std::array<Code<Filter>, 6> filters{{{Filter::nearest, "nearest"},
-                                               {Filter::linear, "linear"},
-                                               {Filter::nearest_mip_nearest, "nearest, nearest mip"},
-                                               {Filter::linear_mip_nearest, "linear, nearest mip"},
-                                               {Filter::nearest_mip_linear, "nearest, linear mip"},
-                                               {Filter::linear_mip_linear, "linear, linear mip"}}};
 constexpr std::array<Code<pipeline::AlphaMode>, 3> alpha_modes{{{pipeline::AlphaMode::opaque, "opaque"},
                                                                 {pipeline::AlphaMode::mask, "mask"},
                                                                 {pipeline::AlphaMode::blend, "blend"}}};
@@ -85,9 +65,8 @@ void visit_scene(Fields& fields, Document& document) {
 void visit_buffers(Fields& fields, Document& document) {
     auto& buffers = document.trace.scene.resources->buffers;
     fields.list("buffer", buffers, 28, [&](pipeline::Buffer& buffer, std::size_t i) {
-        document.buffers.resize(buffers.size());
         fields.text("name", buffer.name);
-        fields.blob("bytes", document.buffers[i]);
+        fields.blob("bytes", document.blobs[{Place::Kind::buffer, i, 0}]);
     });
 }
 
@@ -118,7 +97,6 @@ void visit_geometries(Fields& fields, Document& document) {
 void visit_textures(Fields& fields, Document& document) {
     auto& textures = document.trace.scene.resources->textures;
     fields.list("texture", textures, 30, [&](pipeline::Texture& texture, std::size_t i) {
-        document.levels.resize(textures.size());
         TexelFormat format = TexelFormat::rgba8;
         fields.text("name", texture.name);
         fields.choice("format", format, texel_formats);
@@ -129,10 +107,9 @@ void visit_textures(Fields& fields, Document& document) {
         fields.choice("magnification", texture.mag_filter, filters);
         fields.vector("border", texture.border);
         fields.list("level", texture.levels, 32, [&](pipeline::Texture::Level& level, std::size_t k) {
-            document.levels[i].resize(texture.levels.size());
             fields.whole("width", level.width);
             fields.whole("height", level.height);
-            fields.blob("texels", document.levels[i][k]);
+            fields.blob("texels", document.blobs[{Place::Kind::texture_level, i, k}]);
         });
     });
 }
@@ -157,7 +134,6 @@ void visit_materials(Fields& fields, Document& document) {
 void visit_draws(Fields& fields, Document& document) {
     auto& draws = document.trace.scene.draws;
     fields.list("draw", draws, 40, [&](pipeline::Draw& draw, std::size_t i) {
-        document.instances.resize(draws.size());
         document.instance_counts.resize(draws.size());
         std::uint32_t& count = document.instance_counts[i];
         fields.text("name", draw.name);
@@ -165,7 +141,7 @@ void visit_draws(Fields& fields, Document& document) {
         fields.whole("material", draw.material);
         fields.whole<std::uint32_t>("instances", count, 1);
         if (count > most_matrices_in_record) {
-            fields.blob("matrices", document.instances[i]);
+            fields.blob("matrices", document.blobs[{Place::Kind::instances, i, 0}]);
             return;
         }
         draw.instances.resize(count);
@@ -214,19 +190,68 @@ void visit_captured(Fields& fields, Document& document) {
     visit_texts(fields, "frame note", frame.notes);
 }
 
-constexpr std::array<Record, 10> all{{{chunk::metadata, visit_metadata},
-                                      {chunk::scene, visit_scene},
-                                      {chunk::buffers, visit_buffers},
-                                      {chunk::geometries, visit_geometries},
-                                      {chunk::textures, visit_textures},
-                                      {chunk::materials, visit_materials},
-                                      {chunk::draws, visit_draws},
-                                      {chunk::cameras, visit_cameras},
-                                      {chunk::lights, visit_lights},
-                                      {chunk::captured, visit_captured}}};
+using Of = Record::Of;
+constexpr std::array<Record, 19> all{{{Of::both, chunk::metadata, visit_metadata},
+                                      {Of::captured, chunk::scene, visit_scene},
+                                      {Of::both, chunk::buffers, visit_buffers},
+                                      {Of::both, chunk::geometries, visit_geometries},
+                                      {Of::captured, chunk::textures, visit_textures},
+                                      {Of::captured, chunk::materials, visit_materials},
+                                      {Of::captured, chunk::draws, visit_draws},
+                                      {Of::captured, chunk::cameras, visit_cameras},
+                                      {Of::captured, chunk::lights, visit_lights},
+                                      {Of::captured, chunk::captured, visit_captured},
+                                      {Of::recorded, chunk::surfaces, visit_surfaces},
+                                      {Of::recorded, chunk::samplers, visit_samplers},
+                                      {Of::recorded, chunk::programs, visit_programs},
+                                      {Of::recorded, chunk::values, visit_values},
+                                      {Of::recorded, chunk::bindings, visit_bindings},
+                                      {Of::recorded, chunk::states, visit_states},
+                                      {Of::recorded, chunk::targets, visit_targets},
+                                      {Of::recorded, chunk::frames, visit_frames},
+                                      {Of::recorded, chunk::not_recorded, visit_not_recorded}}};
 
 } // namespace
 
 std::span<const Record> records() { return all; }
+
+std::string Place::text() const {
+    switch (kind) {
+    case Kind::buffer:
+        return fmt::format("buffer {}", i);
+    case Kind::texture_level:
+        return fmt::format("texture {} level {}", i, level);
+    case Kind::instances:
+        return fmt::format("the matrices of draw {}", i);
+    case Kind::surface_level:
+        return fmt::format("surface {} level {}", i, level);
+    case Kind::vertex_module:
+        return fmt::format("the vertex shader of program {}", i);
+    case Kind::fragment_module:
+        return fmt::format("the fragment shader of program {}", i);
+    case Kind::uniform:
+        break;
+    }
+    return fmt::format("values {} uniform {}", i, level);
+}
+
+ChunkType Place::named_in() const {
+    switch (kind) {
+    case Kind::buffer:
+        return chunk::buffers;
+    case Kind::texture_level:
+        return chunk::textures;
+    case Kind::instances:
+        return chunk::draws;
+    case Kind::surface_level:
+        return chunk::surfaces;
+    case Kind::vertex_module:
+    case Kind::fragment_module:
+        return chunk::programs;
+    case Kind::uniform:
+        break;
+    }
+    return chunk::values;
+}
 
 } // namespace traces::rtrace

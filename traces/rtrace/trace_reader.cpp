@@ -1,10 +1,10 @@
 #include "traces/rtrace/trace_reader.hpp"
 
 #include "sim/check.hpp"
-#include "traces/camera.hpp"
 #include "traces/hash.hpp"
+#include "traces/recording/recording_check.hpp"
 #include "traces/rtrace/field_codecs.hpp"
-#include "traces/rtrace/matrices.hpp"
+#include "traces/rtrace/number_blobs.hpp"
 #include "traces/rtrace/scene_check.hpp"
 
 #include <algorithm>
@@ -20,17 +20,6 @@ Document TraceReader::empty_document() {
     Document document;
     document.trace.scene.resources = std::make_shared<pipeline::Resources>();
     return document;
-}
-
-std::string TraceReader::Place::text() const {
-    switch (kind) {
-    case Kind::buffer:
-        return fmt::format("buffer {}", i);
-    case Kind::level:
-        return fmt::format("texture {} level {}", i, level);
-    default:
-        return fmt::format("the matrices of draw {}", i);
-    }
 }
 
 bool TraceReader::next() {
@@ -60,6 +49,7 @@ void TraceReader::read() {
 void TraceReader::read_record(const Record& record) {
     const ChunkHead& head = heads_.back();
     file_.require(seen_.insert(record.type).second, head.offset, "one chunk {}, got a second", record.type.text());
+    expect_kind(record);
     const std::vector<std::byte> content = file_.content();
     Decoder decoder(content, fmt::format("{}: byte {}: chunk {}", file_.name(), head.offset, record.type.text()));
     record.visit(decoder, document_);
@@ -67,26 +57,36 @@ void TraceReader::read_record(const Record& record) {
     await_blobs(record.type);
 }
 
+void TraceReader::expect_kind(const Record& record) {
+    if (record.of == Record::Of::both) return;
+    const bool recorded = record.of == Record::Of::recorded;
+    file_.require(recorded_.value_or(recorded) == recorded, heads_.back().offset,
+                  "chunks of a {} trace, as before, got {}", recorded ? "captured" : "recorded", record.type.text());
+    recorded_ = recorded;
+    if (recorded && !document_.trace.recording) document_.trace.recording.emplace();
+}
+
 void TraceReader::await_blobs(ChunkType type) {
-    if (type == chunk::buffers)
-        for (std::size_t i = 0; i < document_.buffers.size(); ++i)
-            await(document_.buffers[i], {Place::Kind::buffer, i});
-    if (type == chunk::textures)
-        for (std::size_t i = 0; i < document_.levels.size(); ++i)
-            for (std::size_t k = 0; k < document_.levels[i].size(); ++k)
-                await(document_.levels[i][k], {Place::Kind::level, i, k});
-    if (type != chunk::draws) return;
-    for (std::size_t i = 0; i < document_.instances.size(); ++i) {
-        if (document_.instance_counts[i] <= most_matrices_in_record) continue;
-        const std::uint64_t expected = matrix_bytes * document_.instance_counts[i];
-        file_.require(document_.instances[i].bytes == expected, heads_.back().offset,
-                      "a blob of {} bytes for the {} matrices of draw {}, got {}", expected,
-                      document_.instance_counts[i], i, document_.instances[i].bytes);
-        await(document_.instances[i], {Place::Kind::instances, i});
+    for (const auto& [place, blob] : document_.blobs) {
+        if (place.named_in() != type) continue;
+        check_size(blob, place);
+        await(blob, place);
     }
 }
 
-void TraceReader::await(const BlobName& blob, Place place) {
+void TraceReader::check_size(const BlobName& blob, const Place& place) const {
+    const std::uint64_t here = heads_.back().offset;
+    if (place.kind == Place::Kind::instances) {
+        const std::uint64_t expected = matrix_bytes * document_.instance_counts[place.i];
+        file_.require(blob.bytes == expected, here, "a blob of {} bytes for the {} matrices of draw {}, got {}",
+                      expected, document_.instance_counts[place.i], place.i, blob.bytes);
+    }
+    if (place.kind >= Place::Kind::vertex_module)
+        file_.require(blob.bytes % 4 == 0, here, "whole words of 4 bytes for {}, got {} bytes", place.text(),
+                      blob.bytes);
+}
+
+void TraceReader::await(const BlobName& blob, const Place& place) {
     const std::uint64_t here = heads_.back().offset;
     file_.require(!blobs_.contains(blob.content), here, "blob {}, which {} names, behind this chunk",
                   blob.content.hex(), place.text());
@@ -119,28 +119,49 @@ void TraceReader::read_blob() {
     fill(awaited.places.front(), std::move(bytes));
 }
 
-void TraceReader::fill(Place place, std::vector<std::byte> bytes) {
-    pipeline::Resources& resources = *document_.trace.scene.resources;
-    if (place.kind == Place::Kind::buffer) {
-        resources.buffers[place.i].bytes = std::move(bytes);
-    } else if (place.kind == Place::Kind::level) {
-        std::vector<std::uint8_t>& rgba = resources.textures[place.i].levels[place.level].rgba;
+void TraceReader::fill(const Place& place, std::vector<std::byte> bytes) {
+    Trace& trace = document_.trace;
+    switch (place.kind) {
+    case Place::Kind::buffer:
+        trace.scene.resources->buffers[place.i].bytes = std::move(bytes);
+        break;
+    case Place::Kind::texture_level: {
+        std::vector<std::uint8_t>& rgba = trace.scene.resources->textures[place.i].levels[place.level].rgba;
         rgba.resize(bytes.size());
         if (!bytes.empty()) std::memcpy(rgba.data(), bytes.data(), bytes.size());
-    } else {
-        std::vector<glm::mat4>& instances = document_.trace.scene.draws[place.i].instances;
-        instances = matrices_of(bytes);
-        for (std::size_t i = 0; i < instances.size(); ++i)
-            for (int k = 0; k < 16; ++k)
-                file_.require(std::isfinite(instances[i][k / 4][k % 4]), heads_.back().offset,
-                              "finite numbers in matrix {} of draw {}", i, place.i);
+        break;
     }
+    case Place::Kind::instances:
+        fill_instances(place.i, bytes);
+        break;
+    case Place::Kind::surface_level:
+        trace.recording->surfaces[place.i].levels[place.level] = std::move(bytes);
+        break;
+    case Place::Kind::vertex_module:
+        trace.recording->programs[place.i].vertex = words_of(bytes);
+        break;
+    case Place::Kind::fragment_module:
+        trace.recording->programs[place.i].fragment = words_of(bytes);
+        break;
+    case Place::Kind::uniform:
+        trace.recording->values[place.i][place.level].words = words_of(bytes);
+        break;
+    }
+}
+
+void TraceReader::fill_instances(std::size_t draw, std::span<const std::byte> bytes) {
+    std::vector<glm::mat4>& instances = document_.trace.scene.draws[draw].instances;
+    instances = matrices_of(bytes);
+    for (std::size_t i = 0; i < instances.size(); ++i)
+        for (int k = 0; k < 16; ++k)
+            file_.require(std::isfinite(instances[i][k / 4][k % 4]), heads_.back().offset,
+                          "finite numbers in matrix {} of draw {}", i, draw);
 }
 
 std::vector<std::string> TraceReader::missing() const {
     std::vector<std::string> lines;
     for (const Record& record : records())
-        if (!seen_.contains(record.type))
+        if (belongs(record, recorded_.value_or(false)) && !seen_.contains(record.type))
             lines.push_back(
                 fmt::format("{}: byte {}: expected a chunk {}", file_.name(), file_.file_bytes(), record.type.text()));
     for (const auto& [content, awaited] : awaited_)
@@ -156,6 +177,12 @@ Trace TraceReader::finish() {
     ContentHash hash;
     hash.add(std::as_bytes(std::span(heads_.back().content.bytes)));
     trace.scene.hash = hash.hex();
+    if (trace.recording) {
+        trace.recording->resources = std::move(trace.scene.resources);
+        trace.recording->resources->find_runs();
+        check_recording(*trace.recording, trace.scene.name);
+        return trace;
+    }
     check_trace(trace);
     trace.scene.resources->find_runs();
     finish_scene(trace.scene);

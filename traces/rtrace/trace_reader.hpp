@@ -22,30 +22,28 @@ class TraceReader {
     /// finished and has the trace's hash.
     Trace finish();
 
-    const Document& document() const { return document_; }
+    /// As far as it was read; finish() takes it.
+    Document& document() { return document_; }
     const std::vector<ChunkHead>& heads() const { return heads_; }
     const ChunkReader& file() const { return file_; }
     /// Blobs that something names and that are not there, one line each.
     std::vector<std::string> missing() const;
 
   private:
-    /// A buffer, a level of a texture or the matrices of a draw.
-    struct Place {
-        enum class Kind : std::uint8_t { buffer, level, instances } kind;
-        std::size_t i = 0, level = 0;
-        std::string text() const;
-    };
     void read_record(const Record& record);
     void read_blob();
-    void await(const BlobName& blob, Place place);
+    void expect_kind(const Record& record);
+    void await(const BlobName& blob, const Place& place);
     void await_blobs(ChunkType type);
-    void fill(Place place, std::vector<std::byte> bytes);
-    void check_references() const;
+    void check_size(const BlobName& blob, const Place& place) const;
+    void fill(const Place& place, std::vector<std::byte> bytes);
+    void fill_instances(std::size_t draw, std::span<const std::byte> bytes);
 
     ChunkReader file_;
     std::vector<ChunkHead> heads_;
     Document document_ = empty_document();
     std::set<ChunkType> seen_;
+    std::optional<bool> recorded_; ///< once a chunk told which kind of trace it is
     struct Awaited {
         std::uint64_t bytes = 0, named_at = 0; ///< size, and the chunk that names it
         std::vector<Place> places;

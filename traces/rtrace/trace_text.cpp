@@ -1,6 +1,7 @@
 #include "traces/trace_text.hpp"
 
 #include "sim/check.hpp"
+#include "traces/recording/recording_check.hpp"
 #include "traces/rtrace/printer.hpp"
 #include "traces/rtrace/trace_reader.hpp"
 
@@ -32,13 +33,14 @@ void compare_fields(const TraceLine& a, const TraceLine& b, std::vector<std::str
 std::vector<TraceLine> dump_trace(const std::filesystem::path& path) {
     TraceReader reader(path);
     while (reader.next()) reader.read();
-    rtrace::Document document = reader.document(); // printed as the file has it, before anything is derived
-    reader.finish();
+    rtrace::Document& document = reader.document(); // printed as the file has it, before anything is derived
     rtrace::Printer printer;
     for (const rtrace::Record& record : rtrace::records()) {
+        if (!belongs(record, document.trace.recording.has_value())) continue;
         printer.begin(record.type.text());
         record.visit(printer, document);
     }
+    reader.finish();
     return std::move(printer.lines);
 }
 
@@ -62,7 +64,14 @@ std::vector<std::string> trace_faults(const std::filesystem::path& path) {
     }
     if (whole)
         for (std::string& line : reader->missing()) faults.push_back(std::move(line));
-    if (faults.empty()) holds([&] { frame_of(reader->finish()); });
+    if (!faults.empty()) return faults;
+    holds([&] {
+        const Trace trace = reader->finish();
+        if (trace.recording)
+            faults = module_faults(*trace.recording, trace.scene.name);
+        else
+            frame_of(trace);
+    });
     return faults;
 }
 

@@ -1,8 +1,9 @@
 // Order of chunks: all tables, then the blobs that they name, in the order of the names.
 #include "sim/check.hpp"
+#include "traces/recording/recording_check.hpp"
 #include "traces/rtrace/chunk_writer.hpp"
 #include "traces/rtrace/field_codecs.hpp"
-#include "traces/rtrace/matrices.hpp"
+#include "traces/rtrace/number_blobs.hpp"
 #include "traces/rtrace/records.hpp"
 #include "traces/rtrace/scene_check.hpp"
 
@@ -12,75 +13,155 @@ namespace traces {
 
 namespace {
 
-using rtrace::BlobName;
 using rtrace::ChunkWriter;
 using rtrace::Document;
+using rtrace::Place;
 
-BlobName blob_of(std::span<const std::byte> content) { return {rtrace::name_of(content), content.size()}; }
+const pipeline::Resources& resources_of(const Trace& trace) {
+    return trace.recording ? *trace.recording->resources : *trace.scene.resources;
+}
 
-Document document_of(const Trace& trace) {
-    Document document{trace, {}, {}, {}, {}};
-    const pipeline::Resources& resources = *trace.scene.resources;
-    // Fields are visited by reference; the bytes, which may be many, are not copied for that.
-    auto& copy = document.trace.scene.resources = std::make_shared<pipeline::Resources>();
+/// @param made holds them where they are made of numbers
+std::span<const std::byte> bytes_at(const Trace& trace, const Place& place, std::vector<std::byte>& made) {
+    switch (place.kind) {
+    case Place::Kind::buffer:
+        return resources_of(trace).buffers[place.i].bytes;
+    case Place::Kind::texture_level:
+        return std::as_bytes(std::span(trace.scene.resources->textures[place.i].levels[place.level].rgba));
+    case Place::Kind::instances:
+        return made = rtrace::bytes_of_matrices(trace.scene.draws[place.i].instances);
+    case Place::Kind::surface_level:
+        return trace.recording->surfaces[place.i].levels[place.level];
+    case Place::Kind::vertex_module:
+        return made = rtrace::bytes_of_words(trace.recording->programs[place.i].vertex);
+    case Place::Kind::fragment_module:
+        return made = rtrace::bytes_of_words(trace.recording->programs[place.i].fragment);
+    case Place::Kind::uniform:
+        break;
+    }
+    return made = rtrace::bytes_of_words(trace.recording->values[place.i][place.level].words);
+}
+
+void name_blob(Document& document, const Trace& trace, const Place& place) {
+    std::vector<std::byte> made;
+    const std::span<const std::byte> bytes = bytes_at(trace, place, made);
+    document.blobs[place] = {rtrace::name_of(bytes), bytes.size()};
+}
+
+// Fields are visited by reference; the bytes, which may be many, are not copied for that.
+
+std::shared_ptr<pipeline::Resources> described(const pipeline::Resources& resources) {
+    auto copy = std::make_shared<pipeline::Resources>();
     copy->geometries = resources.geometries;
     copy->materials = resources.materials;
-    for (const pipeline::Buffer& buffer : resources.buffers) {
-        copy->buffers.push_back({buffer.name, {}, 0});
-        document.buffers.push_back(blob_of(buffer.bytes));
-    }
+    for (const pipeline::Buffer& buffer : resources.buffers) copy->buffers.push_back({buffer.name, {}, 0});
     for (const pipeline::Texture& texture : resources.textures) {
         CHECK(!texture.decode);
-        pipeline::Texture& described = copy->textures.emplace_back();
-        described.name = texture.name;
-        described.srgb = texture.srgb;
-        described.wrap_u = texture.wrap_u;
-        described.wrap_v = texture.wrap_v;
-        described.min_filter = texture.min_filter;
-        described.mag_filter = texture.mag_filter;
-        described.border = texture.border;
-        auto& names = document.levels.emplace_back();
-        for (const pipeline::Texture::Level& level : texture.levels) {
-            described.levels.push_back({level.width, level.height, {}, 0});
-            names.push_back(blob_of(std::as_bytes(std::span(level.rgba))));
-        }
+        pipeline::Texture& one = copy->textures.emplace_back();
+        one.name = texture.name;
+        one.srgb = texture.srgb;
+        one.wrap_u = texture.wrap_u;
+        one.wrap_v = texture.wrap_v;
+        one.min_filter = texture.min_filter;
+        one.mag_filter = texture.mag_filter;
+        one.border = texture.border;
+        for (const pipeline::Texture::Level& level : texture.levels)
+            one.levels.push_back({level.width, level.height, {}, 0});
     }
-    for (const pipeline::Draw& draw : trace.scene.draws) {
-        document.instance_counts.push_back(static_cast<std::uint32_t>(draw.instances.size()));
-        document.instances.emplace_back();
-        if (draw.instances.size() > rtrace::most_matrices_in_record)
-            document.instances.back() = blob_of(rtrace::bytes_of_matrices(draw.instances));
+    return copy;
+}
+
+bool is_apart(const UniformValue& uniform) { return uniform.words.size() > rtrace::most_words_in_record; }
+
+Recording described(const Recording& recording) {
+    Recording copy;
+    for (const RecordedSurface& one : recording.surfaces)
+        copy.surfaces.push_back({one.name, one.kind, one.format, one.width, one.height, one.depth, one.samples,
+                                 std::vector<std::vector<std::byte>>(one.levels.size())});
+    copy.samplers = recording.samplers;
+    for (const RecordedProgram& one : recording.programs) copy.programs.push_back({one.name, {}, {}, one.inputs});
+    for (const std::vector<UniformValue>& set : recording.values) {
+        copy.values.emplace_back();
+        for (const UniformValue& one : set)
+            copy.values.back().push_back({one.name, is_apart(one) ? std::vector<std::uint32_t>() : one.words});
+    }
+    copy.bindings = recording.bindings;
+    copy.states = recording.states;
+    copy.targets = recording.targets;
+    copy.frames = recording.frames;
+    copy.not_recorded = recording.not_recorded;
+    return copy;
+}
+
+void name_blobs_of_scene(Document& document, const Trace& trace) {
+    const pipeline::Resources& resources = *trace.scene.resources;
+    for (std::size_t i = 0; i < resources.textures.size(); ++i)
+        for (std::size_t k = 0; k < resources.textures[i].levels.size(); ++k)
+            name_blob(document, trace, {Place::Kind::texture_level, i, k});
+    for (std::size_t i = 0; i < trace.scene.draws.size(); ++i) {
+        const std::size_t count = trace.scene.draws[i].instances.size();
+        document.instance_counts.push_back(static_cast<std::uint32_t>(count));
+        if (count > rtrace::most_matrices_in_record) name_blob(document, trace, {Place::Kind::instances, i, 0});
+    }
+}
+
+void name_blobs_of_recording(Document& document, const Trace& trace) {
+    const Recording& recording = *trace.recording;
+    for (std::size_t i = 0; i < recording.surfaces.size(); ++i)
+        for (std::size_t k = 0; k < recording.surfaces[i].levels.size(); ++k)
+            if (!recording.surfaces[i].levels[k].empty())
+                name_blob(document, trace, {Place::Kind::surface_level, i, k});
+    for (std::size_t i = 0; i < recording.programs.size(); ++i) {
+        name_blob(document, trace, {Place::Kind::vertex_module, i, 0});
+        if (!recording.programs[i].fragment.empty()) name_blob(document, trace, {Place::Kind::fragment_module, i, 0});
+    }
+    for (std::size_t i = 0; i < recording.values.size(); ++i)
+        for (std::size_t k = 0; k < recording.values[i].size(); ++k)
+            if (is_apart(recording.values[i][k])) name_blob(document, trace, {Place::Kind::uniform, i, k});
+}
+
+Document document_of(const Trace& trace) {
+    Document document;
+    document.trace.metadata = trace.metadata;
+    document.trace.scene = trace.scene;
+    document.trace.frame = trace.frame;
+    document.trace.scene.resources = described(resources_of(trace));
+    for (std::size_t i = 0; i < resources_of(trace).buffers.size(); ++i)
+        name_blob(document, trace, {Place::Kind::buffer, i, 0});
+    if (trace.recording) {
+        document.trace.recording = described(*trace.recording);
+        name_blobs_of_recording(document, trace);
+    } else {
+        name_blobs_of_scene(document, trace);
     }
     return document;
 }
 
-void write_blobs(const Trace& trace, const Document& document, ChunkWriter& file) {
-    const pipeline::Resources& resources = *trace.scene.resources;
-    for (std::size_t i = 0; i < resources.buffers.size(); ++i)
-        file.add_blob(document.buffers[i].content, resources.buffers[i].bytes);
-    for (std::size_t i = 0; i < resources.textures.size(); ++i)
-        for (std::size_t k = 0; k < resources.textures[i].levels.size(); ++k)
-            file.add_blob(document.levels[i][k].content,
-                          std::as_bytes(std::span(resources.textures[i].levels[k].rgba)));
-    for (std::size_t i = 0; i < trace.scene.draws.size(); ++i)
-        if (document.instance_counts[i] > rtrace::most_matrices_in_record)
-            file.add_blob(document.instances[i].content, rtrace::bytes_of_matrices(trace.scene.draws[i].instances));
+// What is written can be read.
+void check_readable(const Trace& trace, const std::string& path) {
+    if (trace.recording) {
+        check_recording(*trace.recording, path);
+        return;
+    }
+    trace.scene.resources->read_textures();
+    rtrace::check_trace(trace);
+    rtrace::check_finished(trace);
 }
 
 } // namespace
 
 void write_trace(const Trace& trace, const std::filesystem::path& path) {
-    trace.scene.resources->read_textures();
-    rtrace::check_trace(trace); // what is written can be read
-    rtrace::check_finished(trace);
+    check_readable(trace, path.string());
     Document document = document_of(trace);
     ChunkWriter file(path);
     for (const rtrace::Record& record : rtrace::records()) {
+        if (!belongs(record, trace.recording.has_value())) continue;
         rtrace::Encoder encoder(fmt::format("{}: chunk {}", path.string(), record.type.text()));
         record.visit(encoder, document);
         file.add(record.type, encoder.bytes());
     }
-    write_blobs(trace, document, file);
+    std::vector<std::byte> made;
+    for (const auto& [place, blob] : document.blobs) file.add_blob(blob.content, bytes_at(trace, place, made));
     file.finish();
 }
 

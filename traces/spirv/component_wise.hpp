@@ -65,6 +65,8 @@ Reals by_lane(Reals x, Reals y) {
 inline constexpr std::uint32_t sign_bit = 0x80000000;
 
 inline Reals magnitude(Reals x) { return reals(words(x) & same(~sign_bit)); }
+/// Infinite ones, too; false for NaN.
+inline Words is_number(Reals x) { return words((words(x) & same(~sign_bit)) <= same(0x7F800000U)); }
 
 /// Towards zero. From 2^23 on, floats are whole. The sign stays, that of a zero, too.
 inline Reals truncated(Reals x) {

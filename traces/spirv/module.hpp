@@ -86,6 +86,7 @@ class Module {
     const Type& type(Id id) const { return types_[names_[id].index]; }
 
     const std::vector<Variable>& variables() const { return variables_; }
+    const std::vector<Function>& functions() const { return functions_; }
     const std::vector<EntryPoint>& entry_points() const { return entry_points_; }
     const Decorations& decorations(Id id) const;
     std::string name(Id id) const; ///< OpName, else ""

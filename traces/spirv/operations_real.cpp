@@ -17,7 +17,7 @@ Reals quotient(Reals x, Reals y) { return x / y; }
 Reals floor_modulo(Reals x, Reals y) { return x - y * floored(x / y); }
 Reals remainder_of(Reals x, Reals y) { return x - y * truncated(x / y); }
 
-Words ordered(Reals x, Reals y) { return words(x == x) & words(y == y); }
+Words ordered(Reals x, Reals y) { return is_number(x) & is_number(y); }
 Words equal(Reals x, Reals y) { return words(x == y); }
 Words unequal(Reals x, Reals y) { return words(x != y) & ordered(x, y); }
 Words less(Reals x, Reals y) { return words(x < y); }
@@ -32,7 +32,7 @@ Words unordered_greater(Reals x, Reals y) { return ~words(x <= y); }
 Words unordered_less_or_equal(Reals x, Reals y) { return ~words(x > y); }
 Words unordered_greater_or_equal(Reals x, Reals y) { return ~words(x < y); }
 
-Words is_nan(Reals x) { return words(x != x); }
+Words is_nan(Reals x) { return ~is_number(x); }
 Words is_infinite(Reals x) { return words((words(x) & same(~sign_bit)) == same(0x7F800000U)); }
 
 /// Towards zero; what does not fit is cut to what does, NaN is 0: the same on every processor.

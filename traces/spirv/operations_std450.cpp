@@ -65,8 +65,8 @@ Reals smooth_step(Reals low, Reals high, Reals x) {
 Reals multiply_add(Reals a, Reals b, Reals c) { return a * b + c; } // rounded twice, which GLSL allows
 
 // Of a number and a NaN these give the number.
-Reals number_least(Reals x, Reals y) { return pick(words(x == x), pick(words(y == y), least(x, y), x), y); }
-Reals number_greatest(Reals x, Reals y) { return pick(words(x == x), pick(words(y == y), greatest(x, y), x), y); }
+Reals number_least(Reals x, Reals y) { return pick(is_number(x), pick(is_number(y), least(x, y), x), y); }
+Reals number_greatest(Reals x, Reals y) { return pick(is_number(x), pick(is_number(y), greatest(x, y), x), y); }
 Reals number_clamped(Reals x, Reals low, Reals high) { return number_least(number_greatest(x, low), high); }
 
 Words natural_least(Words x, Words y) { return pick(words(y < x), y, x); }

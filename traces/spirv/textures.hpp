@@ -1,7 +1,7 @@
 // What a shader asks of textures. The interpreter knows neither texels nor filters: whoever draws implements this.
 #pragma once
 
-#include "pipeline/functional/lanes.hpp"
+#include "pipeline/texture_lookup.hpp"
 #include "traces/spirv/types.hpp"
 
 #include <array>
@@ -24,35 +24,18 @@ struct TextureVariable {
     std::uint32_t elements = 1; ///< of an array
 };
 
-enum class LevelOfDetail : std::uint8_t {
-    implicit, ///< from differences of the coordinates within the quad, plus `lod`
-    given,    ///< `lod`
-    gradients ///< from dx and dy
-};
+using pipeline::LevelOfDetail;
 
-/// All four lanes are there, those that want nothing, too: their coordinates make differences.
-struct TextureSample {
+/// Places and references are divided already where the call is projective.
+struct TextureSample : pipeline::TextureLookup {
     std::uint32_t texture = 0, element = 0;         ///< index into Program::textures, and into its array
     std::uint32_t sampler = 0, sampler_element = 0; ///< the same pair for combined ones
     const ImageType* image = nullptr;
-    unsigned lanes = 15;                    ///< mask of those that want a value
-    std::array<pipeline::Lanes, 4> place{}; ///< coordinates, then the layer; divided where the call is projective
-    LevelOfDetail level = LevelOfDetail::implicit;
-    pipeline::Lanes lod{};                               ///< bias or level
-    std::array<pipeline::Lanes, 3> dx{}, dy{};           ///< gradients
-    std::array<std::array<std::int32_t, 4>, 3> offset{}; ///< texels, by coordinate and lane
-    bool compares = false;
-    pipeline::Lanes reference{}; ///< depth to compare with
-    bool gathers = false;        ///< four texels' component instead of a filtered texel
-    std::uint32_t component = 0; ///< of a gather
 };
 
-struct TextureFetch {
+struct TextureFetch : pipeline::TexelLookup {
     std::uint32_t texture = 0, element = 0;
     const ImageType* image = nullptr;
-    unsigned lanes = 15;
-    std::array<std::array<std::int32_t, 4>, 4> place{}; ///< texel, then the layer; offsets are added
-    std::array<std::int32_t, 4> level{}, sample{};
 };
 
 /// Width, height, depth and layers, as far as the texture has them, in this order without gaps.

@@ -7,6 +7,7 @@
 #include "traces/workloads.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 
@@ -80,7 +81,7 @@ pipeline::Frame kbuffer_frame(const pipeline::Frame& frame, const models::MakePi
 pipeline::Frame kbuffer_frame(const pipeline::Frame& frame, std::shared_ptr<const pipeline::Kernel> picture);
 
 /// The workload with `change(options, name)` applied to what it is given: as_text(), as_list(), own_k().
-Workload taking(Workload workload, void (*change)(WorkloadOptions&, const std::string&), std::string name);
+Workload taking(Workload workload, void (*change)(WorkloadOptions&, const std::string&), const std::string& name);
 
 /// Makes a text of a parameter that may be a number.
 void as_text(WorkloadOptions& options, const std::string& name);

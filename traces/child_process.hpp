@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace traces::gltf {
+namespace traces {
 
 struct ChildResult {
     std::vector<unsigned char> bytes; ///< what the work wrote
@@ -29,4 +29,4 @@ const Module* load_module(const char* file, const char* function, const char* pu
     return reinterpret_cast<const Module* (*)()>(function_of_module(file, function, purpose, package))();
 }
 
-} // namespace traces::gltf
+} // namespace traces

@@ -1,9 +1,8 @@
-#include "traces/rtrace/matrices.hpp"
+#include "traces/rtrace/number_blobs.hpp"
 
 #include "traces/rtrace/little_endian.hpp"
 
 #include <bit>
-#include <cstdint>
 
 namespace traces::rtrace {
 
@@ -28,6 +27,18 @@ std::vector<glm::mat4> matrices_of(std::span<const std::byte> bytes) {
         for (int i = 0; i < 16; ++i, at += 4)
             matrix[i / 4][i % 4] = std::bit_cast<float>(get_little<std::uint32_t>(at));
     return matrices;
+}
+
+std::vector<std::byte> bytes_of_words(std::span<const std::uint32_t> words) {
+    std::vector<std::byte> bytes(words.size() * 4);
+    for (std::size_t i = 0; i < words.size(); ++i) put_little(&bytes[4 * i], words[i]);
+    return bytes;
+}
+
+std::vector<std::uint32_t> words_of(std::span<const std::byte> bytes) {
+    std::vector<std::uint32_t> words(bytes.size() / 4);
+    for (std::size_t i = 0; i < words.size(); ++i) words[i] = get_little<std::uint32_t>(&bytes[4 * i]);
+    return words;
 }
 
 } // namespace traces::rtrace

@@ -1,4 +1,4 @@
-#include "traces/gltf/child_process.hpp"
+#include "traces/child_process.hpp"
 
 #include "ropsim_build.hpp"
 #include "sim/check.hpp"
@@ -13,7 +13,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-namespace traces::gltf {
+namespace traces {
 
 namespace {
 
@@ -62,20 +62,20 @@ ChildResult in_child_process(std::size_t size,
     char* const line = reinterpret_cast<char*>(shared.data());
     const std::span<unsigned char> bytes(shared.data() + line_size, size);
     const pid_t child = ::fork();
-    if (child < 0) return {{}, fmt::format("no process to decode it in: {}", std::strerror(errno))};
+    if (child < 0) return {{}, fmt::format("no process to run it in: {}", std::strerror(errno))};
     if (child == 0) be_child([&] { return work(bytes, {line, line_size}); });
     int status = 0;
     while (::waitpid(child, &status, 0) < 0)
-        if (errno != EINTR) return {{}, fmt::format("the process that decodes it was lost: {}", std::strerror(errno))};
+        if (errno != EINTR) return {{}, fmt::format("the process was lost: {}", std::strerror(errno))};
     if (WIFSIGNALED(status))
         return {{},
-                fmt::format("the decoder ended with signal {} ({})", WTERMSIG(status), ::strsignal(WTERMSIG(status)))};
+                fmt::format("the library ended with signal {} ({})", WTERMSIG(status), ::strsignal(WTERMSIG(status)))};
     if (WEXITSTATUS(status) == 0) return {{bytes.begin(), bytes.end()}, {}};
     line[line_size - 1] = '\0';
     std::string failure = line;
     for (char& letter : failure)
         if (letter < ' ') letter = ' ';
-    return {{}, failure.empty() ? "the decoder failed" : failure};
+    return {{}, failure.empty() ? "the library failed" : failure};
 }
 
 void* function_of_module(const char* file, const char* function, const char* purpose, const char* package) {
@@ -91,4 +91,4 @@ void* function_of_module(const char* file, const char* function, const char* pur
     return address;
 }
 
-} // namespace traces::gltf
+} // namespace traces

@@ -155,7 +155,7 @@ class Shading {
             const std::size_t each = stream_.varyings;
             const std::span given(stream_.given_varyings.own().data() + first * each, each * group.size());
             varyings_.interpolate(weights(x, y, covered, group), corners_ == 1, given);
-            for (std::size_t n = 1; n < group.size(); ++n) std::copy_n(given.begin(), each, given.begin() + n * each);
+            for (std::size_t n = 1; n < group.size(); ++n) std::copy_n(given.data(), each, given.data() + n * each);
         }
         if (!shades()) return;
         const FragmentShader::Output output = shader_->shade(triangle_, weights(x, y, covered, group), covered);

@@ -22,7 +22,7 @@ class Million {
     void write() const { traces::write_trace(trace_, file()); }
     std::filesystem::path file() const { return folder_.path() / "x.rtrace"; }
     void count(benchmark::State& state) const {
-        state.SetBytesProcessed(static_cast<std::int64_t>(bytes_ * state.iterations()));
+        state.SetBytesProcessed(static_cast<std::int64_t>(bytes_) * state.iterations());
     }
 
   private:
@@ -89,7 +89,7 @@ class ManyDraws {
     void write() const { traces::write_trace(trace_, file()); }
     std::filesystem::path file() const { return folder_.path() / "x.rtrace"; }
     void count(benchmark::State& state) const {
-        state.SetBytesProcessed(static_cast<std::int64_t>(bytes_ * state.iterations()));
+        state.SetBytesProcessed(static_cast<std::int64_t>(bytes_) * state.iterations());
     }
 
   private:

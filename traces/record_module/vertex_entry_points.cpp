@@ -199,7 +199,7 @@ VECTOR_FUNCTIONS(DEFINE_VECTOR)
 #define ROWS_VECTOR(function, type, as) HOOK(function), HOOK(function##ARB),
 
 std::span<const record::Hook> record::vertex_hooks() {
-    static const std::array hooks{PLAIN_FUNCTIONS(ROWS) EXTENDED_FUNCTIONS(ROWS_EXTENDED) UNIT_FUNCTIONS(ROWS_ARB)
-                                      NUMBERED_FUNCTIONS(ROWS_ARB) VECTOR_FUNCTIONS(ROWS_VECTOR)};
+    static const auto hooks = std::to_array<record::Hook>({PLAIN_FUNCTIONS(ROWS) EXTENDED_FUNCTIONS(
+        ROWS_EXTENDED) UNIT_FUNCTIONS(ROWS_ARB) NUMBERED_FUNCTIONS(ROWS_ARB) VECTOR_FUNCTIONS(ROWS_VECTOR)});
     return hooks;
 }

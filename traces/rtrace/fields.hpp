@@ -94,7 +94,7 @@ class Fields {
     void optional(std::string_view name, std::optional<T>& value, Visit visit) {
         bool there = value.has_value();
         flag(name, there);
-        if (there != value.has_value()) value = there ? std::optional<T>(std::in_place) : std::nullopt;
+        if (there != value.has_value()) value = there ? std::optional<T>(T{}) : std::nullopt;
         if (there) part(name, [&] { visit(*value); });
     }
     /// One of several kinds, then what it is. A kind's place in `Kinds` and `names` is its code.

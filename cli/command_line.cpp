@@ -302,8 +302,9 @@ void refuse_extras(const CLI::App& command) {
     const auto option = std::find_if(extras.begin(), extras.end(), is_option);
     if (option != extras.end()) {
         const std::string name = option->substr(0, option->find('='));
+        const char* const whose = command.get_name() == "record" ? " (those of the program stand behind --)" : "";
         throw UsageError(
-            fmt::format("{}unknown option {}{}", place, name, sim::did_you_mean(name, option_names(command))));
+            fmt::format("{}unknown option {}{}{}", place, name, sim::did_you_mean(name, option_names(command)), whose));
     }
     if (command.get_parent() == nullptr)
         throw UsageError(fmt::format("unknown subcommand '{}'{}", extras.front(),

@@ -39,7 +39,7 @@ _ropsim() {
         --designs) _ropsim_list "$(_ropsim_names designs) all"; return ;;
         --workload) _ropsim_words "$(_ropsim_names workloads)"; return ;;
         --entry) _ropsim_words "rgbz z zo"; return ;;
-        --program) _ropsim_words "nearest-k order-and-blend mlab"; _ropsim_files kb; return ;;
+        --program) _ropsim_words "nearest-k order-and-blend mlab"; _ropsim_files kb glsl; return ;;
         --set) _ropsim_words "$(_ropsim_names params | sed 's/$/=/')"; compopt -o nospace; return ;;
         --samples) _ropsim_words "1 4 8"; return ;;
         --size) _ropsim_words "256x256 512x512 1024x1024 1920x1080"; return ;;

@@ -5,6 +5,7 @@
 #include "cli/interruption.hpp"
 #include "reports/result.hpp"
 #include "reports/trace_info.hpp"
+#include "sim/unfinished_file.hpp"
 #include "traces/hash.hpp"
 #include "traces/recording/record_program.hpp"
 
@@ -48,6 +49,9 @@ void write_recording(const RecordingOptions& options, traces::RecordedProgramRun
     std::vector<std::string> notes{fmt::format("drawn by OpenGL {}", run.context)};
     for (const traces::NotRecorded& one : run.recording.not_recorded)
         notes.push_back(fmt::format("not recorded: {}, {} times", one.call, one.times));
+    if (!options.frames.empty() && !run.ended.empty())
+        notes.push_back(fmt::format("frames {} were asked for; the program ended {} behind frame {}", options.frames,
+                                    run.ended, run.recording.frames.back().number));
     trace.recording = std::move(run.recording);
     traces::write_trace(trace, options.file);
     const auto info = reports::trace_info(options.file);
@@ -59,12 +63,15 @@ void write_recording(const RecordingOptions& options, traces::RecordedProgramRun
 void record(const RecordCommand& command) {
     traces::RecordRequest request = request_of("record", command);
     request.command = command.program;
+    sim::check_writable(command.file); // told before a game was played for nothing
     write_recording(command, traces::record_program(request, stop_requested()),
                     std::filesystem::path(command.program.at(0)).filename().string(), "");
 }
 
 void import_frames(const ImportCommand& command) {
-    write_recording(command, traces::record_apitrace(command.trace, request_of("import", command), stop_requested()),
+    const traces::RecordRequest request = request_of("import", command);
+    sim::check_writable(command.file);
+    write_recording(command, traces::record_apitrace(command.trace, request, stop_requested()),
                     std::filesystem::path(command.trace).filename().string(), hash_of(command.trace));
 }
 

@@ -22,8 +22,9 @@ foreach(path models/gpus models/scenes reports/published reports/studies reports
         install(FILES "${path}" DESTINATION "${data_dir}/${folder}")
     endif()
 endforeach()
+install(DIRECTORY traces/samples/ DESTINATION "${data_dir}/traces/samples" PATTERN "record.sh" EXCLUDE)
 install(DIRECTORY models/programs/ DESTINATION "${data_dir}/models/programs" FILES_MATCHING PATTERN "*.kb"
-    PATTERN "language" EXCLUDE)
+    PATTERN "*.glsl" PATTERN "language" EXCLUDE)
 if(EXISTS "${PROJECT_SOURCE_DIR}/cli/completion.bash")
     install(FILES cli/completion.bash DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions" RENAME ropsim)
 endif()

@@ -23,10 +23,9 @@ std::uint64_t bytes_in_memory(const Texture::Level& level) {
 
 constexpr std::uint64_t most_texels = std::uint64_t{1} << 31U; ///< bytes
 
-std::uint64_t texel_bytes(const std::vector<Texture>& textures) {
+std::uint64_t texel_bytes(const Texture& texture) {
     std::uint64_t bytes = 0;
-    for (const Texture& texture : textures)
-        for (const Texture::Level& level : texture.levels) bytes += std::uint64_t{level.width} * level.height * 4;
+    for (const Texture::Level& level : texture.levels) bytes += std::uint64_t{level.width} * level.height * 4;
     return bytes;
 }
 
@@ -41,7 +40,8 @@ void Texture::make_empty_levels(std::uint32_t width, std::uint32_t height) {
 }
 
 void Resources::read_textures() const {
-    const std::uint64_t bytes = texel_bytes(textures);
+    std::uint64_t bytes = 0;
+    for (const Texture& texture : textures) bytes += texel_bytes(texture);
     const bool any = std::any_of(textures.begin(), textures.end(), [](const Texture& one) { return bool(one.decode); });
     if (any && bytes > most_texels)
         throw sim::InputError(fmt::format("textures: expected at most {} MiB of texels, got {} MiB in {} textures",
@@ -56,6 +56,19 @@ void Resources::read_textures() const {
         CHECK(texture.levels.size() == addresses.size());
         for (std::size_t i = 0; i < addresses.size(); ++i) texture.levels[i].address = addresses[i];
     }
+}
+
+const Texture& Resources::read_map(std::uint32_t number) const {
+    LateTexture& map = maps.at(number);
+    if (!map.make) return map.texture;
+    map.texture = map.make();
+    map.make = nullptr;
+    std::uint64_t bytes = 0;
+    for (const LateTexture& one : maps) bytes += texel_bytes(one.texture);
+    if (bytes > most_texels)
+        throw sim::InputError(fmt::format("maps of materials: expected at most {} MiB of texels, got {} MiB",
+                                          most_texels >> 20U, bytes >> 20U));
+    return map.texture;
 }
 
 const VertexAttribute* Geometry::find(Semantic semantic) const {

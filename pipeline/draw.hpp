@@ -4,6 +4,7 @@
 // guarantees that every index, offset and length is in range (validate() checks it).
 #pragma once
 
+#include "pipeline/material.hpp"
 #include "pipeline/sample_planes.hpp"
 #include "pipeline/topology.hpp"
 #include "sim/field.hpp"
@@ -166,22 +167,10 @@ struct Texture {
     void make_empty_levels(std::uint32_t width, std::uint32_t height);
 };
 
-enum class AlphaMode : std::uint8_t { opaque, mask, blend };
-
-struct Material {
-    std::string name;
-    glm::vec4 base_colour{1.0F};    ///< linear RGBA factor
-    std::int32_t base_texture = -1; ///< index into Resources::textures, -1 = none
-    std::uint8_t texcoord = 0;      ///< which set of texture coordinates, 0 to 7
-    glm::mat3 uv_transform{1.0F};   ///< KHR_texture_transform
-    AlphaMode alpha_mode = AlphaMode::opaque;
-    float alpha_cutoff = 0.5F;
-    bool double_sided = false;
-    float transmission = 0.0F; ///< > 0: drawn as transparent
-    bool unlit = false;
-    bool flat = false; ///< colour and normal are those of the provoking vertex
-
-    bool transparent() const { return alpha_mode == AlphaMode::blend || transmission > 0.0F; }
+/// A texture that is made when somebody asks for it: most frames read none of them.
+struct LateTexture {
+    Texture texture;                 ///< without levels until then
+    std::function<Texture()> make{}; ///< with all levels and texels; throws sim::InputError
 };
 
 class VertexProgram;
@@ -204,12 +193,15 @@ struct Resources {
     std::vector<Geometry> geometries;
     mutable std::vector<Texture> textures; ///< mutable for read_textures() alone, which changes no value that is seen
     std::vector<Material> materials;
+    mutable std::vector<LateTexture> maps; ///< of materials, beside their colours; mutable for read_map() alone
 
     /// Gives every buffer and texture level an address in GPU memory, 256-byte aligned, in order.
     void place();
     /// Decodes the textures that are not yet. To be called by whoever is going to read texels, before; by one thread.
     /// Throws sim::InputError for an image that cannot be decoded, and for more than 2 GiB of texels.
     void read_textures() const;
+    /// maps[number] with its texels, which are made if they are not yet; by one thread. Throws as read_textures() does.
+    const Texture& read_map(std::uint32_t number) const;
     /// Fills Geometry::runs where primitive restart is on. Index buffers that are too short leave no runs behind, which
     /// validate() refuses.
     void find_runs();

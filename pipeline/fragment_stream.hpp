@@ -16,6 +16,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/vec4.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -70,8 +71,17 @@ struct DrawRange {
     std::uint32_t quads = 0;
     std::uint32_t geometry = own_geometry; ///< of a part: the one that its triangles are listed in,
     std::uint32_t first_triangle = 0;      ///< ... from this one on
+    /// That its vertex program takes for a vertex, in the mean, rounded; 0: it has none, or one that does not count.
+    std::uint32_t vertex_instructions = 0;
 
     bool is_part() const { return geometry != own_geometry; }
+};
+
+/// Quads in a row that are given as many varyings each, up to the next run.
+struct VaryingRun {
+    QuadId first_quad = 0;
+    std::uint32_t each = 0;  ///< with the one that ShaderInput::varyings begins with; 0: draws without a program
+    std::uint64_t first = 0; ///< of the first quad, in FragmentStream::given_varyings
 };
 
 struct FragmentStream {
@@ -88,9 +98,10 @@ struct FragmentStream {
     std::vector<std::array<glm::vec4, 4>> colours; ///< shaded linear RGBA, not premultiplied: the first output
     std::vector<std::vector<std::array<glm::vec4, 4>>> more_outputs; ///< of a shader with several: from the second on
     /// What the shader of the pass is given, where it has one of its own; see ShaderInput.
-    SharedVector<std::array<glm::vec4, 4>> given_colours, given_normals;
-    SharedVector<std::array<glm::vec4, 4>> given_varyings; ///< `varyings` of each quad
-    std::uint32_t varyings = 0;                            ///< with the one that ShaderInput::varyings begins with
+    SharedVector<std::array<glm::vec4, 4>> given_colours, given_normals, given_texcoords;
+    SharedVector<glm::vec4> given_tangents;
+    SharedVector<std::array<glm::vec4, 4>> given_varyings; ///< of one quad after the other
+    SharedVector<VaryingRun> varying_runs;                 ///< of all quads, where there are any varyings
     SharedVector<std::uint32_t> texture_lines;             ///< 64-byte line of the quad's texture fetch, ~0 = no fetch
 
     std::uint64_t groups = 0;              ///< quads of pixels; as many as `quads` with one sample
@@ -102,6 +113,8 @@ struct FragmentStream {
     std::uint32_t draw_of(QuadId quad) const { return triangles[quads[quad].triangle].draw; }
     /// The range that a primitive lies in: an index into `draws`.
     std::uint32_t range_of(std::uint32_t primitive) const;
+    /// What the shader is given of a quad with ShaderInput::varyings.
+    std::span<const std::array<glm::vec4, 4>> varyings_of(QuadId quad) const;
     /// What a modify program may read of pixel `lane` (0 to 3) of a quad.
     Fragment fragment(QuadId quad, std::size_t lane) const {
         return {colours.empty() ? nullptr : &colours[quad][lane].x, depths[quad][lane], draw_of(quad)};

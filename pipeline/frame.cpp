@@ -11,12 +11,13 @@ Needs Frame::needs_of(const Pass& pass) const {
     Needs own = needs;
     if (pass.kind == PassKind::screen) own = {};
     own.colours &= pass.writes_colour() || (pass.runs_program() && program->needs_colour());
-    own.fragment_normals = false;
+    own.fragment_normals = own.map_texcoords = false;
     if (pass.shader != nullptr) {
         const ShaderShape shape = pass.shader->shape();
         own.colours = shape.colour.has_value();
         own.fragment_colour = shape.colour.value_or(FragmentColour::unlit);
         own.fragment_normals = shape.normal;
+        own.map_texcoords = shape.map_texcoords;
     }
     const bool of_material = own.colours && own.fragment_colour != FragmentColour::flat;
     const bool coloured = own.alpha_test || (of_material && own.fragment_colour != FragmentColour::cosine);

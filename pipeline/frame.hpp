@@ -105,6 +105,7 @@ struct Needs {
     bool alpha_test = false;
     bool colours = false;          ///< fragments carry a colour
     bool fragment_normals = false; ///< fragments carry a normal
+    bool map_texcoords = false;    ///< ... and the coordinates of their material's maps, where it has some
     FragmentColour fragment_colour = FragmentColour::lit;
     bool depth = false; ///< depth surface and its tile cache
     bool early_depth = false;

@@ -253,18 +253,26 @@ void Machine::bind(const Pass& pass, const FragmentStream& stream) {
 void Machine::drop_written(std::span<const SurfaceId> written) {
     const SurfaceStore& surfaces = units_->surfaces;
     for (const SurfaceId surface : written)
-        if (surface != no_surface)
-            for (FragmentPipeline& pipe : units_->pipes)
-                pipe.drop_surface(surfaces.address(surface, {}), surfaces.end_of(surface));
+        if (surface != no_surface) drop_texture_lines(surfaces.address(surface, {}), surfaces.end_of(surface));
+}
+
+void Machine::drop_texture_lines(std::uint64_t begin, std::uint64_t end) {
+    for (FragmentPipeline& pipe : units_->pipes) pipe.drop_surface(begin, end);
 }
 
 void Machine::draw(const Pass& pass, const FragmentStream& unshaded) {
     FragmentStream shaded;
-    const FragmentStream& stream = shade_pass(pass, unshaded, units_->surfaces, shaded);
+    const bool late = shades_late(pass, unshaded);
+    if (late) {
+        shaded = unshaded;
+        make_outputs(pass.shader->shape(), shaded);
+    }
+    const FragmentStream& stream = late ? shaded : shade_pass(pass, unshaded, units_->surfaces, shaded);
     bind(pass, stream);
+    units_->pass.late = late ? &shaded : nullptr;
     if (pass.cold) {
         units_->front.drop_cached();
-        for (FragmentPipeline& pipe : units_->pipes) pipe.drop_surface(0, ~std::uint64_t{0});
+        drop_texture_lines(0, ~std::uint64_t{0});
     }
     PassContext& context = units_->pass;
     if (!pass.runs_program()) {

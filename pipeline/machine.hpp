@@ -66,6 +66,8 @@ class Machine {
     /// The surfaces of a pass become those of the ROPs.
     void bind(const Pass& pass, const FragmentStream& stream);
     void drop_written(std::span<const SurfaceId> written);
+    /// The texture caches forget what lies in [begin, end) of memory.
+    void drop_texture_lines(std::uint64_t begin, std::uint64_t end);
     void run_and_judge(std::size_t number, const FragmentStream& stream, const ReferenceImage& reference);
     /// @param triangle the draw whose triangle covers the screen, or stands for one that does
     void screen(const ScreenPass& pass, std::uint32_t triangle, std::uint64_t written_address);

@@ -9,7 +9,8 @@ namespace pipeline {
 
 namespace {
 
-constexpr std::array output_counters{"quads", "fragments", "hazardous_quads", "first_cycle", "last_cycle"};
+constexpr std::array output_counters{"quads",           "fragments",   "samples_passed",
+                                     "hazardous_quads", "first_cycle", "last_cycle"};
 
 std::vector<std::string> names_of_draw_counters() {
     const auto& geometry = sim::field_names<GeometryDrawStats>;
@@ -27,6 +28,7 @@ std::vector<std::uint64_t> Machine::draw_counters(std::uint32_t draw) const {
         const DrawOutput& part = rop.draw_outputs()[draw];
         output.quads += part.quads;
         output.fragments += part.fragments;
+        output.passed += part.passed;
         output.hazards += part.hazards;
         output.first_cycle = std::min(output.first_cycle, part.first_cycle);
         output.last_cycle = std::max(output.last_cycle, part.last_cycle);
@@ -36,7 +38,7 @@ std::vector<std::uint64_t> Machine::draw_counters(std::uint32_t draw) const {
     const GeometryDrawStats geometry = units_->front.draw_stats(draw);
     sim::for_each_field(geometry,
                         [&counters](const auto&, const sim::Counter& counter) { counters.push_back(counter.value); });
-    counters.insert(counters.end(), {output.quads, output.fragments, output.hazards,
+    counters.insert(counters.end(), {output.quads, output.fragments, output.passed, output.hazards,
                                      output.quads == 0 ? 0 : output.first_cycle, output.last_cycle});
     const MemoryBytes bytes = units_->memory.draw_bytes(draw);
     counters.insert(counters.end(), bytes.begin(), bytes.end());
@@ -56,7 +58,7 @@ Machine::DrawSnapshot Machine::counters_of_draws(const FragmentStream& stream) c
 
 // Cycles of the first and last quad are those of all passes so far: only what adds up is said of one.
 void Machine::book_draws(DrawSnapshot&& before) {
-    const std::size_t first_cycle = sim::field_names<GeometryDrawStats>.size() + 3;
+    const std::size_t first_cycle = sim::field_names<GeometryDrawStats>.size() + 4;
     for (DrawCounters& draw : before) {
         std::vector<std::uint64_t> counters = draw_counters(draw.draw);
         for (std::size_t i = 0; i < counters.size(); ++i) counters[i] -= draw.counters[i];

@@ -84,6 +84,7 @@ void Machine::draw_layers(const Pass& pass, const FragmentStream& stream) {
     far_layers.reserve(passes);
     for (std::uint32_t i = 0; i < passes; ++i) {
         begin(fmt::format("{} layer {}", pass.name, i));
+        resolve_cleared(pass.reads);
         layer.clear(0);
         fixed.winner.assign(pixels, ~QuadId{0});
         if (both_ends) {
@@ -113,7 +114,7 @@ void Machine::draw_layers(const Pass& pass, const FragmentStream& stream) {
             const std::uint64_t bytes = drawn * copy.pixel_bytes;
             stream_surface({bytes, bytes, context.depth.address, copy.address});
             units_->simulation.run(options_.stop);
-            for (FragmentPipeline& pipe : units_->pipes) pipe.drop_surface(copy.address, copy_end);
+            drop_texture_lines(copy.address, copy_end);
         }
         end();
     }
@@ -169,6 +170,7 @@ void Machine::draw_lists(const Pass& pass, const FragmentStream& stream) {
     for (std::uint32_t i = 0; i < site.passes; ++i) {
         begin(site.passes == 1 ? pass.name : fmt::format("{} pass {}", pass.name, i));
         context.first_kept = i * site.per_pixel;
+        resolve_cleared(pass.reads);
         if (i > 0) clear_surface(units_->kbuffer_clear, context.layout, pixels, heads);
         units_->simulation.run(options_.stop);
         run_draw(stream, frame_->needs_of(pass));
@@ -182,8 +184,7 @@ void Machine::draw_lists(const Pass& pass, const FragmentStream& stream) {
         resolve_cleared(units_->kbuffer_clear, heads);
         end();
     }
-    const std::uint64_t heads_end = heads.address + std::uint64_t{context.layout.blocks()} * 4 * heads.pixel_bytes;
-    for (FragmentPipeline& pipe : units_->pipes) pipe.drop_surface(heads.address, heads_end);
+    drop_texture_lines(heads.address, heads.address + std::uint64_t{context.layout.blocks()} * 4 * heads.pixel_bytes);
     const ScreenPass sort =
         list_sort_pass(pass.name + " sort", site, *frame_->program, *units_->lists, heads.address, stream);
     screen(sort, stream.triangles.front().draw, units_->surfaces.address(pass.kbuffer, {}));

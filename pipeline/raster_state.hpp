@@ -1,11 +1,13 @@
 // State of the fixed-function units that an application may change from draw to draw.
 //
-// Source: OpenGL 4.5 core, sections 13.5 (user clip distances), 13.6 (viewport), 14.4 to 14.6 (points, lines, polygons)
-// and 17.3 (per-fragment operations). Not modelled: logic operations, dual-source blending, depth bounds.
+// Source: OpenGL 4.5 core, sections 13.5 (user clip distances), 13.6 (viewport, depth range), 14.4 to 14.6 (points,
+// lines, polygons) and 17.3 (per-fragment operations). Not modelled: logic operations, dual-source blending, depth
+// bounds.
 #pragma once
 
 #include "sim/field.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <glm/vec4.hpp>
@@ -102,7 +104,12 @@ struct DepthState {
     bool clamp = false;
     float bias_slope = 0.0F;    ///< added to the depth: slope * largest depth change per pixel
     float bias_constant = 0.0F; ///< ... + constant * the smallest step of the depth format
+    float range_near = 0.0F;    ///< window depth of the near plane of clip space, 0 to 1
+    float range_far = 1.0F;     ///< ... of the far plane, which may be less
 
+    /// What fragments' depths lie between; those that a shader sets, between 0 and 1.
+    float least() const { return clamp ? std::min(range_near, range_far) : 0.0F; }
+    float greatest() const { return clamp ? std::max(range_near, range_far) : 1.0F; }
     /// Whether the depth surface is touched at all.
     bool used() const { return test || write; }
     bool operator==(const DepthState&) const = default;

@@ -18,9 +18,9 @@ namespace pipeline {
 
 namespace {
 
-/// Sums over all fragments of the k-buffer passes.
+/// Sums over all fragments; all but the first of passes with a k-buffer alone.
 struct Counts {
-    std::atomic<std::uint64_t> accepted{0}, missed_reads{0}, missed_pixels{0};
+    std::atomic<std::uint64_t> passed{0}, accepted{0}, missed_reads{0}, missed_pixels{0};
 };
 
 /// A store on its way to the pixel.
@@ -74,6 +74,7 @@ class PassRunner {
     }
 
     void add_counts() {
+        counts_.passed += passed_;
         counts_.accepted += accepted_;
         counts_.missed_reads += missed_reads_;
         counts_.missed_pixels += missed_pixels_;
@@ -100,6 +101,7 @@ class PassRunner {
     void run_fragment(QuadId quad) {
         const RasterState& state = states_.of(stream_, quad);
         if (!tests_pass(state, quad)) return;
+        ++passed_;
         if (counts_complexity_) ++image_.depth_complexity[pixel_];
         for (std::size_t i = 0; i < colours_.size(); ++i) store_colour(state, quad, i);
         if (pass_.runs_program()) insert(quad);
@@ -181,7 +183,7 @@ class PassRunner {
     std::vector<PendingStore> pending_; ///< of the current pixel: [head_, tail_), oldest first
     std::size_t head_ = 0, tail_ = 0;
     bool missed_here_ = false;
-    std::uint64_t accepted_ = 0, missed_reads_ = 0, missed_pixels_ = 0;
+    std::uint64_t passed_ = 0, accepted_ = 0, missed_reads_ = 0, missed_pixels_ = 0;
 };
 
 template <class Visit>
@@ -307,12 +309,13 @@ std::vector<SurfaceId> surfaces_behind(const Pass& pass) {
     return surfaces;
 }
 
-void run_reference_pass(const Frame& frame, const Pass& pass, const FragmentStream& stream, SurfaceStore& surfaces,
-                        unsigned threads) {
+std::uint64_t run_reference_pass(const Frame& frame, const Pass& pass, const FragmentStream& stream,
+                                 SurfaceStore& surfaces, unsigned threads) {
     ReferenceImage image;
     image.depth_complexity.resize(std::size_t{stream.width} * stream.rows());
     Counts counts;
     draw_pass(frame, pass, stream, 1, threads, surfaces, image, counts);
+    return counts.passed;
 }
 
 ReferenceImage run_reference(const Frame& frame, std::span<const FragmentStream> streams, QuadId delay,

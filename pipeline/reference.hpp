@@ -53,8 +53,9 @@ std::vector<SurfaceId> written_surfaces(const Pass& pass);
 /// Those whose content it depends on: what it writes, as it need not write all of it, and what its shader reads.
 std::vector<SurfaceId> surfaces_behind(const Pass& pass);
 
-/// Executes one pass, which rasterizes, on `surfaces`; `stream` is its stream as rasterize_frame() makes it.
-void run_reference_pass(const Frame& frame, const Pass& pass, const FragmentStream& stream, SurfaceStore& surfaces,
-                        unsigned threads = 0);
+/// Executes one pass, which rasterizes, on `surfaces`; `stream` is its stream as rasterize_frame() makes it. Returns
+/// how many of its fragments, or samples, passed the stencil and depth tests.
+std::uint64_t run_reference_pass(const Frame& frame, const Pass& pass, const FragmentStream& stream,
+                                 SurfaceStore& surfaces, unsigned threads = 0);
 
 } // namespace pipeline

@@ -30,7 +30,9 @@ struct ShaderShape {
     std::uint32_t registers = 4;            ///< 128-bit registers per fragment; they limit the quads in flight
     std::optional<FragmentColour> colour{}; ///< of the material, that it starts from; draw passes only
     bool normal = false;                    ///< it reads the surface's normal; draw passes only
+    bool map_texcoords = false;             ///< ... and coordinates and tangent, for maps of materials
     bool sets_depth = false;
+    bool discards = true; ///< it may clear pixels of ShaderOutput::alive
 };
 
 /// A quad. Pixel i is (x + i % 2, y + i / 2).
@@ -42,6 +44,12 @@ struct ShaderInput {
     Lanes depth{};              ///< window depth in [0,1]; 0 in screen passes
     QuadTexels colour{};        ///< linear RGBA as asked for by the shape, else 0
     QuadTexels normal{};        ///< eye space, of unit length or 0; w is 0
+    /// {u, v} of texture coordinates 0, then of 1, as vertices have them; those of pixels outside of the mask are for
+    /// derivatives. 0 where the shape does not ask for them and where the material has no maps.
+    QuadTexels texcoords{};
+    /// Where u of the material's normal map grows over the triangle: eye space, of unit length, with what the cross
+    /// product of normal and tangent is to be multiplied by in w; 0 where there is no such direction.
+    glm::vec4 tangent{0.0F};
     /// Of draws with a vertex program, else empty. The first is {w of clip space, place in the point from the left,
     /// from the top, 0}; the others are the program's.
     std::span<const QuadTexels> varyings{};

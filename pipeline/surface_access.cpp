@@ -45,12 +45,17 @@ glm::vec4 SurfaceAccess::texel(SurfaceId surface, std::int32_t x, std::int32_t y
 QuadTexels SurfaceAccess::fetch(std::uint32_t slot, const LaneIndices& x, const LaneIndices& y, unsigned pixels,
                                 std::uint32_t plane, std::uint32_t level) {
     const SurfaceId surface = slots_[slot];
-    CHECK(surfaces_.info(surface).program == nullptr);
-    QuadTexels result{};
+    const SurfaceInfo& info = surfaces_.info(surface);
+    CHECK(info.program == nullptr);
     begin_fetch(surface);
-    for_each_pixel(pixels,
-                   [&](std::size_t i) { result[i] = texel(surface, x[i], y[i], plane, level, glm::vec4(0.0F)); });
-    return result;
+    const std::uint32_t width = info.width_of(level), height = info.height_of(level);
+    const std::uint32_t first_row = plane * info.rows_between_planes(level);
+    std::array<const std::byte*, 4> texels{};
+    for_each_pixel(pixels, [&](std::size_t i) {
+        const auto column = static_cast<std::uint32_t>(x[i]), row = static_cast<std::uint32_t>(y[i]); // < 0: very large
+        if (column < width && row < height) texels[i] = bytes(surface, {column, first_row + row, level});
+    });
+    return unpack_texels(info.format, texels);
 }
 
 QuadTexels SurfaceAccess::filter(SurfaceId surface, const SurfaceSampler& sampler, const Lanes& u, const Lanes& v,

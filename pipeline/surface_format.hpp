@@ -136,6 +136,15 @@ constexpr bool is_integer(SurfaceFormat format) {
     return info_of(format).kind == ChannelKind::integer || info_of(format).kind == ChannelKind::signed_integer;
 }
 constexpr bool is_colour(SurfaceFormat format) { return !has_depth(format) && !has_stencil(format); }
+/// Steps between an alpha of 0 and one of 1 that alpha tests tell apart: those that the format stores, or where it has
+/// no alpha, those of its other channels. 0: it stores floats or whole numbers, and tests compare floats.
+/// Source: OpenGL 2.1, section 4.1.4. llvmpipe does so for channels of 8 bits alone.
+constexpr std::uint32_t alpha_steps(SurfaceFormat format) {
+    if (format == SurfaceFormat::rgb10a2) return 3;
+    const SurfaceFormatInfo& info = info_of(format);
+    if (info.kind != ChannelKind::unorm && info.kind != ChannelKind::srgb) return 0;
+    return (1U << info.bytes * 8U / info.channels) - 1U;
+}
 
 /// The smallest step of a depth format, by which a constant depth bias counts; 0: that of a 32-bit float at the depth.
 constexpr double depth_step(SurfaceFormat format) {

@@ -99,8 +99,7 @@ SurfacePage make_page(const std::byte* texel, std::uint32_t texel_bytes) {
     return page;
 }
 
-std::shared_ptr<const SurfaceContents> make_contents(const SurfaceInfo& info,
-                                                     const std::vector<std::vector<std::byte>>& levels) {
+std::shared_ptr<const SurfaceContents> make_contents(const SurfaceInfo& info, const std::vector<SharedBytes>& levels) {
     CHECK(info.program == nullptr);
     if (levels.size() > info.levels)
         throw sim::InputError(fmt::format("surface '{}': contents of {} levels, expected {} at most", info.name,

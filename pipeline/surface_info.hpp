@@ -3,6 +3,7 @@
 
 #include "pipeline/output/kbuffer.hpp"
 #include "pipeline/sample_planes.hpp"
+#include "pipeline/shared_bytes.hpp"
 #include "pipeline/surface_format.hpp"
 
 #include <algorithm>
@@ -105,7 +106,6 @@ struct SurfaceContents {
 /// `levels`: bytes of a level's planes, of their rows, of their texels, without gaps; of compressed formats those of
 /// the 4x4 blocks in their place. A level without bytes holds 0. Throws the sim::InputError that names the surface when
 /// there are more levels than it has, or a level has another number of bytes.
-std::shared_ptr<const SurfaceContents> make_contents(const SurfaceInfo& info,
-                                                     const std::vector<std::vector<std::byte>>& levels);
+std::shared_ptr<const SurfaceContents> make_contents(const SurfaceInfo& info, const std::vector<SharedBytes>& levels);
 
 } // namespace pipeline

@@ -11,6 +11,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/vec4.hpp>
+#include <vector>
 
 namespace pipeline {
 
@@ -38,6 +39,12 @@ constexpr std::uint32_t coordinates_of(TextureKind kind) {
     return counts[static_cast<std::size_t>(kind)];
 }
 
+/// A level of a plane that another surface of one plane and level has.
+struct TexturePart {
+    std::uint32_t level = 0, plane = 0;
+    std::uint32_t slot = 0; ///< of SurfaceAccess
+};
+
 /// How a shader sees a surface.
 struct TextureView {
     std::uint32_t slot = 0; ///< of SurfaceAccess
@@ -46,6 +53,7 @@ struct TextureView {
     bool multisampled = false; ///< planes are samples
     std::uint32_t base_level = 0, last_level = 1000;
     std::array<Swizzle, 4> swizzle{Swizzle::red, Swizzle::green, Swizzle::blue, Swizzle::alpha};
+    std::vector<TexturePart> parts{}; ///< in place of its own; their formats are the surface's
 };
 
 enum class LevelOfDetail : std::uint8_t {

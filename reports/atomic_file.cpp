@@ -96,7 +96,7 @@ void make_directory(const fs::path& directory) {
     if (error && !fs::is_directory(directory))
         throw sim::InputError(fmt::format("{}: cannot be made a folder: {}", directory.string(), error.message()));
     // Asked by doing: access rights alone do not tell about read-only file systems.
-    const sim::UnfinishedFile probe(directory / "probe");
+    const sim::UnfinishedFile probe(directory / ".ropsim-probe");
     const int descriptor = ::open(probe.temporary().c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
     if (descriptor < 0) cannot_write(directory, errno);
     ::close(descriptor);

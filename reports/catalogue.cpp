@@ -12,6 +12,7 @@
 #include "ropsim_build.hpp"
 #include "traces/generators.hpp"
 #include "traces/preparation.hpp"
+#include "traces/user_programs.hpp"
 #include "traces/workloads.hpp"
 
 #include <algorithm>
@@ -84,6 +85,19 @@ std::string program_numbers(const pipeline::ModifyProgram& program) {
                        program.needs_texture() ? ", fetches a table" : "");
 }
 
+// Not compiled: that takes glslang, and a second.
+CatalogueEntry glsl_program(const std::string& file) {
+    const traces::shader_programs::Declaration program = traces::glsl_declaration(file);
+    const std::uint32_t k = program.default_k;
+    return {"programs",
+            file,
+            fmt::format("{}; k = {}: {} floats per pixel, {}; operations are counted when it is compiled",
+                        program.summary, k, program.floats(k),
+                        program.order == pipeline::OrderNeed::any ? "any order" : "primitive order"),
+            {},
+            fmt::format("program \"{}\" in GLSL", program.id)};
+}
+
 // Cost and size grow with k; they are told for the usual one.
 std::vector<CatalogueEntry> programs() {
     std::vector<CatalogueEntry> entries;
@@ -103,6 +117,7 @@ std::vector<CatalogueEntry> programs() {
                            {},
                            fmt::format("program \"{}\" in the k-buffer language", program->id())});
     }
+    for (const std::string& file : traces::shipped_glsl_programs()) entries.push_back(glsl_program(file));
     return entries;
 }
 
@@ -196,6 +211,7 @@ std::vector<std::string> preparation_names() { return ids_of(traces::preparation
 std::vector<std::string> program_names() {
     std::vector<std::string> names = ids_of(models::programs());
     for (const std::string& file : models::shipped_user_programs()) names.push_back(file);
+    for (const std::string& file : traces::shipped_glsl_programs()) names.push_back(file);
     return names;
 }
 

@@ -5,6 +5,7 @@
 #include "pipeline/machine.hpp"
 #include "pipeline/on_chip_area.hpp"
 #include "reports/flatten.hpp"
+#include "reports/memory_limit.hpp"
 #include "reports/stopwatch.hpp"
 #include "sim/counted.hpp"
 #include "sim/described_json.hpp"
@@ -138,7 +139,8 @@ std::vector<pipeline::FragmentStream> shade(const pipeline::Frame& frame, unsign
     options.stop = supervision.stop;
     if (supervision.progress != nullptr)
         options.progress = [progress = supervision.progress](double share) { progress->share = share; };
-    return pipeline::rasterize_frame(frame, options);
+    const MemoryLimit limit = memory_limit();
+    return pipeline::rasterize_frame(frame, options, {static_cast<std::uint64_t>(limit.bytes), limit.whose});
 }
 
 void submit(const ComparisonInput& input, std::vector<ComparedDesign>& designs, const Supervision& supervision) {

@@ -1,10 +1,13 @@
 #include "sim/unfinished_file.hpp"
 
+#include "sim/check.hpp"
+
 #include <array>
 #include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -37,6 +40,14 @@ int hold(const std::string& path) {
     return no_slot;
 }
 
+std::filesystem::path name_of_file(std::filesystem::path path) {
+    std::error_code unknown;
+    const auto status = std::filesystem::status(path, unknown);
+    if (path.filename().empty() || (exists(status) && !is_regular_file(status)))
+        throw InputError(fmt::format("{}: expected the name of a file to write", path.string()));
+    return path;
+}
+
 void release(int slot) {
     if (slot != no_slot) held_files[static_cast<std::size_t>(slot)].state = State::free;
 }
@@ -44,7 +55,7 @@ void release(int slot) {
 } // namespace
 
 UnfinishedFile::UnfinishedFile(std::filesystem::path path)
-    : path_(std::move(path)),
+    : path_(name_of_file(std::move(path))),
       temporary_(path_.parent_path() / fmt::format(".{}.{}.part", path_.filename().string(), ::getpid())),
       slot_(hold(temporary_.string())) {}
 
@@ -57,6 +68,13 @@ int UnfinishedFile::commit() {
     if (::rename(temporary_.c_str(), path_.c_str()) != 0) return errno;
     done_ = true;
     return 0;
+}
+
+void check_writable(const std::filesystem::path& path) {
+    const UnfinishedFile probe(path);
+    const int file = ::open(probe.temporary().c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    if (file < 0) throw InputError(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(errno)));
+    ::close(file);
 }
 
 void remove_unfinished_files() {

@@ -9,6 +9,7 @@ namespace sim {
 /// without, the destructor removes it.
 class UnfinishedFile {
   public:
+    /// Throws sim::InputError for a name that something else than a file has: commit() would replace a device, too.
     explicit UnfinishedFile(std::filesystem::path path);
     ~UnfinishedFile();
     UnfinishedFile(const UnfinishedFile&) = delete;
@@ -25,6 +26,10 @@ class UnfinishedFile {
     int slot_;
     bool done_ = false;
 };
+
+/// To be asked before a long run. Throws sim::InputError where no file of that name can be begun: "PATH: cannot be
+/// written: REASON".
+void check_writable(const std::filesystem::path& path);
 
 /// Removes all files that are unfinished, and keeps others from being begun: the program is about to end. May be called
 /// by a signal handler.

@@ -6,6 +6,7 @@
 #include "traces/glsl_module/glsl_module.h"
 
 #include <array>
+#include <charconv>
 #include <cstring>
 #include <fmt/format.h>
 #include <optional>
@@ -95,6 +96,21 @@ std::map<std::string, std::uint32_t> output_locations(const std::vector<std::uin
 
 } // namespace
 
+GlslError::GlslError(const std::string& program, const std::string& failure)
+    : InputError(fmt::format("{}: expected GLSL that glslang compiles: {}", program, failure)), problem(failure) {
+    const std::string mark = ", line ";
+    const std::size_t number = failure.find(mark);
+    if (number == std::string::npos) return;
+    const char* const end = failure.data() + failure.size();
+    std::uint32_t value = 0;
+    const auto [behind, status] = std::from_chars(failure.data() + number + mark.size(), end, value);
+    if (status != std::errc() || behind == end || *behind != ':') return;
+    line = value;
+    problem = std::string(behind + 1, end);
+    problem.erase(0, problem.find_first_not_of(' '));
+    problem.erase(problem.find_last_not_of(' ') + 1);
+}
+
 CompiledProgram compile_glsl(const GlslProgram& program, GlslOptimisation optimisation) {
     const RopsimGlslModule& module = glsl_module();
     std::vector<RopsimGlslShader> shaders;
@@ -118,8 +134,7 @@ CompiledProgram compile_glsl(const GlslProgram& program, GlslOptimisation optimi
             std::memcpy(out.data(), sizes.data(), sizeof sizes);
             return status;
         });
-    if (!result.failure.empty())
-        throw sim::InputError(fmt::format("{}: expected GLSL that glslang compiles: {}", program.name, result.failure));
+    if (!result.failure.empty()) throw GlslError(program.name, result.failure);
     Sizes sizes{};
     std::memcpy(sizes.data(), result.bytes.data(), sizeof sizes);
     CHECK(sizes[0] <= room && sizes[1] <= room - sizes[0]);

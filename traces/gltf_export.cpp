@@ -5,6 +5,7 @@
 #include "traces/gltf/export_materials.hpp"
 #include "traces/gltf/export_nodes.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <map>
 #include <optional>
@@ -61,6 +62,10 @@ std::vector<std::string> export_glb(const Scene& scene, const std::filesystem::p
     for (const pipeline::Draw& draw : scene.draws) exporter.add_draw(draw);
     for (const Camera& camera : scene.cameras) gltf::export_camera(file, camera);
     for (const Light& light : scene.lights) gltf::export_light(file, light);
+    const auto& materials = scene.resources->materials;
+    if (std::any_of(materials.begin(), materials.end(),
+                    [](const pipeline::Material& material) { return material.maps != pipeline::MaterialMaps{}; }))
+        file.notes.emplace_back("materials are written without what they state beside colour and opacity");
     file.write(path);
     return file.notes;
 }

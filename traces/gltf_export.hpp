@@ -1,6 +1,7 @@
 // Scenes as binary glTF 2.0 files (.glb), so that what was prepared can be read again, here and elsewhere.
 //
-// Written: all draws with their materials, base colour textures (PNG), instances, cameras and lights. Attributes keep
+// Written: all draws with their materials (less their maps, which is a note), base colour textures (PNG), instances,
+// cameras and lights. Attributes keep
 // their formats and stay side by side or apart as they are; KHR_mesh_quantization is required where integers need it.
 // What glTF does not know becomes floats (half floats, 32-bit and packed integers), a list (primitive restart), wider
 // indices (the largest value of a type) or multiples of 4 bytes (offsets and strides).

@@ -51,7 +51,7 @@ namespace {
 
 // What the fragments of the passes are asked for.
 struct Values {
-    bool lit = false, cosine = false, normal = false;
+    bool lit = false, cosine = false, normal = false, map_texcoords = false;
     bool textured = false; ///< texture and vertex colours, lit or not
     bool own_shaders = false;
 };
@@ -70,6 +70,7 @@ Values values_of(const Frame& frame, FragmentColour colour) {
         const std::optional<FragmentColour> wanted = asked_of(frame, pass, colour);
         if (pass.shader != nullptr) {
             values.normal |= pass.shader->shape().normal;
+            values.map_texcoords |= pass.shader->shape().map_texcoords;
             values.own_shaders |= pass.kind == PassKind::draw;
         }
         values.lit |= wanted == FragmentColour::lit;
@@ -97,6 +98,7 @@ Needs needs_of(const Frame& frame, const Offers& offers, FragmentColour colour) 
     if (colour == FragmentColour::flat && !values.own_shaders) return needs;
     needs.alpha_test = offers.alpha_test;
     needs.fragment_normals = values.normal;
+    needs.map_texcoords = values.map_texcoords;
     needs.normals = (values.lit && offers.normals) || ((values.cosine || values.normal) && offers.any_normals);
     needs.vertex_colours = (values.textured && offers.vertex_colours) || offers.alpha_in_mask;
     needs.textures = (values.textured && offers.textures) || offers.textured_mask;

@@ -8,6 +8,7 @@
 #include "pipeline/reference.hpp"
 #include "traces/view_rays.hpp"
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <glm/glm.hpp>
@@ -45,6 +46,11 @@ struct FrameSurface {
     bool front = true;      ///< its triangle's corners go round counter-clockwise on the screen
     glm::vec4 colour{0.0F}; ///< as the material gives it: linear RGBA
     glm::dvec3 normal{0.0}; ///< likewise, in the world, of unit length or 0; 0 where no shader of the frame reads it
+    /// As shaders that read maps of materials are given them (pipeline::ShaderInput), the tangent in the world: of the
+    /// 2x2 block around the pixel, whose pixel `lane` this is, or four times the same where no block is.
+    std::array<glm::vec4, 4> texcoords{};
+    glm::vec4 tangent{0.0F};
+    std::uint32_t lane = 0;
 };
 
 /// What one pixel sees.

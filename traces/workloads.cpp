@@ -1,9 +1,9 @@
 #include "traces/workloads.hpp"
 
-#include "models/programs/language/user_program.hpp"
 #include "sim/check.hpp"
 #include "sim/suggest.hpp"
 #include "traces/pass_graph.hpp"
+#include "traces/user_programs.hpp"
 #include "traces/workloads/methods.hpp"
 
 #include <fmt/format.h>
@@ -114,7 +114,7 @@ void own_k(WorkloadOptions& options, const std::string& k) {
     const auto program = options.values->find("program");
     if (options.values->contains(k) || program == options.values->end() || !program->is_string()) return;
     const auto name = program->get<std::string>();
-    if (models::is_user_program(name)) options.values[k] = models::load_user_program(name, 0).program->k();
+    if (is_user_program(name)) options.values[k] = usual_entries(name);
 }
 
 const std::string& usual_workload() { return workloads().front().id; }

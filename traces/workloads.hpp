@@ -66,6 +66,11 @@ struct Averaging {
         settings;
 };
 
+/// A parameter that may name a user's program, and those that say of how many entries and of which opacity.
+struct ProgramParameter {
+    std::string program, k, opacity;
+};
+
 struct Workload {
     std::string id;
     std::string summary; ///< one line
@@ -77,7 +82,8 @@ struct Workload {
     /// The value of every parameter, those that were not given included: what a default of another version cannot
     /// change.
     std::function<sim::JsonValue(const WorkloadOptions&)> all_parameters = {};
-    std::vector<std::string> program_parameters = {}; ///< that may name a user's program
+    std::vector<ProgramParameter> program_parameters = {};
+    bool reads_maps = false; ///< of materials, beside their colours; captured traces leave them out else
     Measured measured = Measured::colours;
     std::vector<QualityKnob> quality = {};
     std::optional<Averaging> averaging = {};

@@ -7,6 +7,7 @@
 #include "models/programs/nearest_k.hpp"
 #include "models/programs/order_and_blend.hpp"
 #include "models/programs/pictures.hpp"
+#include "models/programs/program_file.hpp"
 #include "models/programs/stencil.hpp"
 #include "models/programs/volume.hpp"
 #include "models/programs/z_buffer.hpp"
@@ -94,9 +95,7 @@ const std::vector<Program>& programs() {
 
 ProgramChoice choose_program(std::string_view name, const ProgramOptions& options) {
     if (is_user_program(name)) {
-        if (!options.entry.empty())
-            throw sim::InputError(fmt::format("program {}: it declares its entries; expected no kind, got '{}'",
-                                              name.substr(0, name.find('\n')), options.entry));
+        refuse_entry_kind(name, options.entry);
         return load_user_program(name, options.k, {{"opacity", options.opacity}});
     }
     const std::string id = pick(name, names_of(programs()), "program");

@@ -37,7 +37,10 @@ class Mlab final : public pipeline::ModifyProgram {
     bool insert(float* pixel, const float* fragment) const override {
         Pass::Entry left;
         std::copy_n(fragment, floats, left.begin());
-        Pass::exchange(pixel, k(), left);
+        if (opacity_)
+            Pass::exchange(pixel, k(), left);
+        else
+            Pass::exchange_latest_first(pixel, k(), left);
         float* last = pixel + std::size_t{k() - 1} * floats;
         for (std::uint32_t channel = 0; channel < 3; ++channel)
             last[channel] = finite(last[channel] + last[transmittance] * left[channel]);

@@ -18,6 +18,8 @@ inline constexpr std::uint32_t most_mlab_nodes = 51;
 std::shared_ptr<const pipeline::ModifyProgram> make_mlab(std::uint32_t k, float opacity);
 
 /// The same of fragments that are nodes already: their colour weighted, the share that they let through for an alpha.
+/// Of equal depths the last arrival is in front, as where it is blended: letters over the panel that they are written
+/// on.
 std::shared_ptr<const pipeline::ModifyProgram> make_nodes(std::uint32_t k);
 
 } // namespace models

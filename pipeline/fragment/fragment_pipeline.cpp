@@ -142,10 +142,15 @@ void FragmentPipeline::run_shader(std::uint16_t index) {
     QuadWork& work = work_[index];
     work.clear();
     SurfaceAccess access(*pass_->surfaces, pass_->pass->reads, &work);
-    const ShaderInput input = shader_input(*pass_->stream, threads_[index].task.quad);
+    const QuadId quad = threads_[index].task.quad;
+    const ShaderInput input = shader_input(*pass_->stream, quad);
     ShaderOutput output;
     output.alive = input.pixels;
     pass_->pass->shader->shade(input, access, output);
+    if (pass_->late != nullptr) {
+        CHECK_MSG(output.alive == input.pixels, "a shader discards pixels, though its shape says that it does not");
+        keep_outputs(output, quad, *pass_->late);
+    }
     for (const QuadWork::Fetch& fetch : work.fetches())
         if (fetch.count == 0) use_texture_unit(filter_cycles(fetch.texel_bytes));
 }

@@ -37,6 +37,7 @@ struct SurfaceBytes {
 
 struct PassContext {
     const FragmentStream* stream = nullptr;
+    FragmentStream* late = nullptr; ///< the same where the pipes fill in what the shader makes, see shades_late()
     const ModifyProgram* program = nullptr;
     const Pass* pass = nullptr;
     const SurfaceStore* surfaces = nullptr; ///< of the frame, for shaders and early tests that read them

@@ -6,10 +6,12 @@
 #include "pipeline/functional/raster_triangle.hpp"
 #include "pipeline/functional/sample_walk.hpp"
 #include "sim/check.hpp"
+#include "sim/large_pages.hpp"
 
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <span>
 
 namespace pipeline {
@@ -124,8 +126,8 @@ void place(std::vector<CoveredPiece>& covered, FragmentStream& stream) {
         stream.fragments += piece.fragments;
         if (triangles > largest_count) throw sim::InputError("scene: expected at most 2^32 - 1 triangles in a pass");
     }
-    stream.triangles.own().resize(triangles);
-    stream.quads.own().resize(quads);
+    sim::resize_in_large_pages(stream.triangles.own(), triangles);
+    sim::resize_in_large_pages(stream.quads.own(), quads);
 }
 
 /// Moves a piece to its place in the stream.
@@ -160,16 +162,19 @@ void count_quads_of_draws(const std::vector<PlannedPiece>& pieces, const std::ve
     }
 }
 
-void run_program(FrontEndPlan& plan, const PlannedVertices& run, const PlannedPiece& piece) {
+/// Returns the instructions that it took.
+std::uint64_t run_program(FrontEndPlan& plan, const PlannedVertices& run, const PlannedPiece& piece) {
     const PlannedState& state = plan.states[run.state];
     const auto part = [&piece](auto& list, std::uint64_t first, std::size_t of_each) {
         return std::span(list).subspan(first + piece.first * of_each, piece.count * of_each);
     };
     std::vector<glm::vec4> positions(piece.count);
+    std::vector<std::uint32_t> instructions(piece.count);
     ProgramVertices made{.positions = positions,
                          .varyings = part(plan.varyings, run.first_varying, run.shape.varyings),
                          .point_sizes = part(plan.point_sizes, run.first_size, run.shape.point_size ? 1 : 0),
-                         .distances = part(plan.distances, run.first_distance, state.state->clip_planes != 0 ? 1 : 0)};
+                         .distances = part(plan.distances, run.first_distance, state.state->clip_planes != 0 ? 1 : 0),
+                         .instructions = instructions};
     run.program->run(run.instance, run.used.first + piece.first, made);
     for (std::uint32_t i = 0; i < piece.count; ++i) {
         ScreenVertex& vertex = plan.vertices[run.first_vertex + piece.first + i];
@@ -183,6 +188,7 @@ void run_program(FrontEndPlan& plan, const PlannedVertices& run, const PlannedPi
             if (distance < 0.0F) vertex.outside |= outside::user_plane(plane);
         }
     }
+    return std::accumulate(instructions.begin(), instructions.end(), std::uint64_t{0});
 }
 
 } // namespace
@@ -191,13 +197,14 @@ void transform_pass(FrontEndPlan& plan) {
     std::vector<PlannedPiece> pieces;
     for (std::uint32_t i = 0; i < plan.runs.size(); ++i)
         cut_into_pieces(pieces, i, plan.runs[i].used.end - plan.runs[i].used.first, vertices_per_piece);
+    std::vector<std::uint64_t> instructions(pieces.size());
     plan.progress.begin_pass(pieces.size(), 0.05);
     parallel_for(plan.options.threads, pieces.size(), [&](std::size_t i) {
         plan.progress.begin_piece();
         const PlannedPiece& piece = pieces[i];
         const PlannedVertices& run = plan.runs[piece.of];
         if (run.program != nullptr) {
-            run_program(plan, run, piece);
+            instructions[i] = run_program(plan, run, piece);
             plan.progress.end_piece();
             return;
         }
@@ -215,6 +222,7 @@ void transform_pass(FrontEndPlan& plan) {
         }
         plan.progress.end_piece();
     });
+    for (std::size_t i = 0; i < pieces.size(); ++i) plan.runs[pieces[i].of].instructions += instructions[i];
 }
 
 void coverage_pass(FrontEndPlan& plan, FragmentStream& stream) {

@@ -5,6 +5,8 @@
 #include "sim/check.hpp"
 
 #include <algorithm>
+#include <array>
+#include <fmt/format.h>
 #include <utility>
 
 namespace pipeline {
@@ -33,6 +35,8 @@ std::vector<RasterState> until_shading(std::vector<RasterState> states) {
         state.depth.clamp = depth.clamp;
         state.depth.bias_slope = depth.bias_slope;
         state.depth.bias_constant = depth.bias_constant;
+        state.depth.range_near = depth.range_near;
+        state.depth.range_far = depth.range_far;
     }
     return states;
 }
@@ -48,7 +52,8 @@ bool draw_alike(const Frame& frame, const Pass& a, const Pass& b) {
            a.view == b.view && a.draws == b.draws && a.parts.empty() && b.parts.empty() &&
            a.both_faces == b.both_faces && a.state_of_draw == b.state_of_draw && of_a.colours == of_b.colours &&
            of_a.fragment_normals == of_b.fragment_normals && of_a.fragment_colour == of_b.fragment_colour &&
-           of_a.textures == of_b.textures && of_a.alpha_test == of_b.alpha_test &&
+           of_a.map_texcoords == of_b.map_texcoords && of_a.textures == of_b.textures &&
+           of_a.alpha_test == of_b.alpha_test &&
            depth_step(depth_format(frame, a)) == depth_step(depth_format(frame, b)) &&
            until_shading(a.states) == until_shading(b.states);
 }
@@ -57,6 +62,7 @@ FragmentStream rasterize_pass(const Frame& frame, const Pass& pass, FrontEndOpti
     const Needs needs = frame.needs_of(pass);
     options.colours = needs.colours;
     options.normals = needs.fragment_normals;
+    options.map_texcoords = needs.map_texcoords;
     options.fragment_colour = needs.fragment_colour;
     options.textures = needs.textures;
     options.alpha_test = needs.alpha_test;
@@ -77,25 +83,60 @@ FragmentStream cover_screen(const Frame& frame, const Pass& pass) {
     return screen_stream(target.width, target.height, *frame.screen_draw);
 }
 
+/// Counts what streams hold together, and refuses more than they may.
+class StreamBudget {
+  public:
+    explicit StreamBudget(const StreamLimit& limit) : limit_(limit) {}
+
+    void add(std::uint64_t bytes) { held_ += bytes; }
+    /// Of the outputs of a pass's shader, where they are made at once.
+    static std::uint64_t outputs_of(const Pass& pass, const FragmentStream& stream) {
+        if (pass.shader == nullptr || pass.reads_surfaces()) return 0;
+        return stream.quads.size() * pass.shader->shape().outputs * sizeof(std::array<glm::vec4, 4>);
+    }
+    void check(const Pass& pass, const FragmentStream& stream, std::uint64_t bytes) const {
+        constexpr std::uint64_t mib = std::uint64_t{1} << 20U;
+        const std::uint64_t needed = held_ + bytes + outputs_of(pass, stream);
+        if (needed <= limit_.bytes) return;
+        throw sim::InputError(fmt::format("pass {}: {}x{} pixels: with its {} quads the fragments of the frame need at "
+                                          "least {} MiB of memory, {} {} MiB",
+                                          pass.name, stream.width, stream.height, stream.quads.size(), needed / mib,
+                                          limit_.whose, limit_.bytes / mib));
+    }
+
+  private:
+    StreamLimit limit_;
+    std::uint64_t held_ = 0;
+};
+
 } // namespace
 
-std::vector<FragmentStream> rasterize_frame(const Frame& frame, const FrontEndOptions& options) {
+std::vector<FragmentStream> rasterize_frame(const Frame& frame, const FrontEndOptions& asked,
+                                            const StreamLimit& limit) {
     std::vector<FragmentStream> streams;
     std::vector<std::pair<const Pass*, FragmentStream>> unshaded; // what the shaders of passes are given
+    StreamBudget budget(limit);
+    FrontEndOptions options = asked;
     for (const Pass& pass : frame.passes) {
         if (!pass.rasterizes()) continue;
+        options.about_to_shade = [&](const FragmentStream& stream, std::uint64_t bytes) {
+            budget.check(pass, stream, bytes);
+        };
         if (pass.kind == PassKind::screen || pass.shader == nullptr) {
             streams.push_back(pass.shader == nullptr ? rasterize_pass(frame, pass, options)
                                                      : cover_screen(frame, pass));
+            budget.add(streams.back().bytes());
         } else {
             auto alike = std::find_if(unshaded.begin(), unshaded.end(),
                                       [&](const auto& before) { return draw_alike(frame, *before.first, pass); });
             if (alike == unshaded.end()) {
                 alike = unshaded.emplace(unshaded.end(), &pass, rasterize_pass(frame, pass, options));
                 alike->second.given_colours = std::exchange(alike->second.colours, {});
+                budget.add(alike->second.bytes());
             }
             streams.push_back(alike->second);
         }
+        budget.add(StreamBudget::outputs_of(pass, streams.back()));
         if (pass.shader != nullptr && !pass.reads_surfaces()) shade(pass, streams.back(), {}, options.threads);
     }
     return streams;

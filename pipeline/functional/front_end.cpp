@@ -78,6 +78,9 @@ void check_states(const FrontEndOptions& options, std::size_t draws) {
                                               state.viewport->width, state.viewport->height, state.viewport->x,
                                               state.viewport->y));
         if (!finite(state)) throw sim::InputError(fmt::format("state {}: expected finite numbers", i));
+        if (!is_usable(state.depth))
+            throw sim::InputError(fmt::format("state {}: expected a depth range within 0 to 1, not {} to {}", i,
+                                              state.depth.range_near, state.depth.range_far));
     }
     if (options.state_of_draw.empty()) return;
     if (options.state_of_draw.size() != draws)
@@ -220,7 +223,6 @@ class Planner {
             run.first_size = sizes;
             varyings += std::uint64_t{count} * run.shape.varyings;
             if (run.shape.point_size) sizes += count;
-            if (run.program != nullptr) stream_.varyings = std::max(stream_.varyings, run.shape.varyings + 1);
         }
         plan_.vertices.resize(vertices);
         plan_.distances.resize(distances);
@@ -271,6 +273,16 @@ class Planner {
     std::uint64_t primitives_ = 0;
 };
 
+void keep_instructions(const FrontEndPlan& plan, FragmentStream& stream) {
+    for (std::size_t i = 0; i < plan.instances.size(); ++i) {
+        const PlannedVertices& run = plan.runs[plan.instances[i].run];
+        const std::uint64_t vertices = run.used.end - run.used.first;
+        if (run.instructions != 0)
+            stream.draws.own()[i].vertex_instructions =
+                static_cast<std::uint32_t>(std::max<std::uint64_t>(1, (run.instructions + vertices / 2) / vertices));
+    }
+}
+
 template <class Add>
 FragmentStream rasterize_planned(const Resources& resources, const std::vector<Draw>& draws, const View& view,
                                  const FrontEndOptions& options, std::size_t parts, const Add& add) {
@@ -288,6 +300,7 @@ FragmentStream rasterize_planned(const Resources& resources, const std::vector<D
         planner.finish();
     }
     transform_pass(plan);
+    keep_instructions(plan, stream);
     coverage_pass(plan, stream);
     shading_pass(plan, stream);
     return stream;

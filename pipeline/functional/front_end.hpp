@@ -18,8 +18,9 @@
 namespace pipeline {
 
 struct FrontEndOptions {
-    bool colours = true;  ///< fill FragmentStream::colours
-    bool normals = false; ///< fill FragmentStream::given_normals
+    bool colours = true;        ///< fill FragmentStream::colours
+    bool normals = false;       ///< fill FragmentStream::given_normals
+    bool map_texcoords = false; ///< fill FragmentStream::given_texcoords and given_tangents
     FragmentColour fragment_colour = FragmentColour::lit;
     bool textures = true;    ///< read textures; without, materials have their base colour only
     bool both_faces = false; ///< keep triangles that face away, whatever their material says
@@ -34,6 +35,8 @@ struct FrontEndOptions {
     unsigned threads = 0;                    ///< 0 = all cores; the result is the same for any number
     const std::atomic<bool>* stop = nullptr; ///< when it becomes true, sim::Interrupted is thrown
     std::function<void(double)> progress;    ///< called with the share done, 0 to 1, never by two threads at once
+    /// Called when the quads are known, with the bytes that they are about to take together; ends the work by throwing.
+    std::function<void(const FragmentStream&, std::uint64_t)> about_to_shade;
 };
 
 /// Rasterizes and shades the given draws, in the given order, as seen by `view`.

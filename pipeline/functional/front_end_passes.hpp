@@ -31,6 +31,7 @@ struct PlannedVertices {
     VertexProgramShape shape{};      ///< of the program
     std::uint64_t first_varying = 0; ///< in FrontEndPlan::varyings, where there is a program
     std::uint64_t first_size = 0;    ///< in FrontEndPlan::point_sizes, where it gives sizes
+    std::uint64_t instructions = 0;  ///< that it took for all vertices; of no program 0
 };
 
 /// One instance of one draw.
@@ -100,6 +101,10 @@ struct FrontEndPlan {
         }
     }
 
+    const ScreenVertex& vertex_of(const PlannedInstance& instance, std::uint32_t vertex) const {
+        const PlannedVertices& run = runs[instance.run];
+        return vertices[run.first_vertex + (vertex - run.used.first)];
+    }
     /// Of a vertex of an instance that is drawn with a program.
     std::span<const glm::vec4> varyings_of(const PlannedInstance& instance, std::uint32_t vertex) const {
         const PlannedVertices& run = runs[instance.run];
@@ -125,7 +130,7 @@ struct FrontEndPlan {
     }
 };
 
-/// Fills plan.vertices and plan.distances.
+/// Fills plan.vertices, plan.distances, plan.varyings and plan.point_sizes, and counts the instructions of the runs.
 void transform_pass(FrontEndPlan& plan);
 
 /// Fills the stream's primitives, triangles and quads (all but Quad::alive), and the quad counts of its draws.

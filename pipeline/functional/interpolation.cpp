@@ -87,7 +87,7 @@ Lanes DepthPlane::at(std::int32_t x, std::int32_t y, SampleOffset from_centre) c
     // Clamped before it is rounded: the plane of a sliver may be out of the range of binary32.
     for (std::size_t lane = 0; lane < 4; ++lane) {
         const double depth = std::clamp(depths[lane], static_cast<double>(least_), static_cast<double>(greatest_));
-        result[lane] = static_cast<float>(std::clamp(depth + bias_, 0.0, 1.0));
+        result[lane] = static_cast<float>(std::clamp(depth + bias_, lowest_, highest_));
     }
     return result;
 }

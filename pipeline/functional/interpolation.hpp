@@ -25,6 +25,11 @@ class DepthPlane {
     /// Adds the bias of a state (OpenGL 4.5, section 14.6.5). `step` is the smallest one of the depth format; 0: that
     /// of a 32-bit float at the greatest depth of the corners.
     void add_bias(const DepthState& state, double step);
+    /// Keeps depths between what the state says instead of between 0 and 1.
+    void bound(const DepthState& state) {
+        lowest_ = static_cast<double>(state.least());
+        highest_ = static_cast<double>(state.greatest());
+    }
 
     /// Depth in [0,1] at the quad whose top left pixel is (x, y), also where pixels are not covered; at the samples
     /// that lie there from the centres.
@@ -35,6 +40,7 @@ class DepthPlane {
     double step_x_ = 0, step_y_ = 0;
     float least_, greatest_;
     double bias_ = 0;
+    double lowest_ = 0, highest_ = 1;
 };
 
 /// Shares of corners 1 and 2 in the attributes at each pixel; the rest is corner 0's.

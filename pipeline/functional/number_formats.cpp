@@ -34,18 +34,6 @@ std::array<float, 255> make_srgb_boundaries() {
 
 } // namespace
 
-float half_to_float(std::uint16_t half) {
-    const std::uint32_t sign = (half & 0x8000U) << 16U;
-    const std::uint32_t exponent = (half >> 10U) & 0x1FU;
-    const std::uint32_t fraction = half & 0x3FFU;
-    if (exponent == 0) {
-        const float magnitude = static_cast<float>(fraction) * 0x1p-24F; // subnormal, exact in binary32
-        return sign != 0 ? -magnitude : magnitude;
-    }
-    const std::uint32_t wide = exponent == 31 ? 0x7F800000U : (exponent + 112U) << 23U;
-    return std::bit_cast<float>(sign | wide | (fraction << 13U));
-}
-
 std::uint16_t float_to_half(float value) {
     const auto bits = std::bit_cast<std::uint32_t>(value);
     const std::uint32_t sign = (bits >> 16U) & 0x8000U;

@@ -15,7 +15,13 @@ constexpr double round_even(double value) {
 }
 
 /// binary16 -> binary32, exact. Infinities and NaNs stay what they are.
-float half_to_float(std::uint16_t half);
+constexpr float half_to_float(std::uint16_t half) {
+    const std::uint32_t sign = (half & 0x8000U) << 16U, size = (half & 0x7FFFU) << 13U;
+    constexpr std::uint32_t infinite = 0x1FU << 23U, all_ones = 0xFFU << 23U;
+    if (size >= infinite) return std::bit_cast<float>(sign | all_ones | size);
+    // The exponent's bias grows from 15 to 127; the product is exact, also of what is subnormal before it.
+    return std::bit_cast<float>(sign | std::bit_cast<std::uint32_t>(std::bit_cast<float>(size) * 0x1p112F));
+}
 
 /// Halfway between 65504, the largest finite binary16, and what would be the next: from here on numbers are infinite.
 inline constexpr float infinite_half = 65520.0F;

@@ -141,10 +141,12 @@ CoveredQuads quads_of_line(const RasterLine& line, const PixelBounds& drawn) {
     return in_order(std::move(quads));
 }
 
-LinePlane::LinePlane(const RasterLine& line, const ScreenVertex& from, const ScreenVertex& to)
+LinePlane::LinePlane(const RasterLine& line, const ScreenVertex& from, const ScreenVertex& to, const DepthState& state)
     : line_(line),
       depth_(static_cast<double>(from.depth)),
       depth_step_(static_cast<double>(to.depth) - depth_),
+      lowest_(static_cast<double>(state.least())),
+      highest_(static_cast<double>(state.greatest())),
       w_from_(static_cast<double>(std::max(from.clip.w, smallest_w))),
       w_to_(static_cast<double>(std::max(to.clip.w, smallest_w))) {
     const glm::dvec2 a(from.window), along = glm::dvec2(to.window) - a;
@@ -171,7 +173,7 @@ Lanes LinePlane::depths(std::int32_t x, std::int32_t y) const {
     const std::array<double, 4> place = places(x, y);
     Lanes result;
     for (std::size_t lane = 0; lane < 4; ++lane)
-        result[lane] = static_cast<float>(std::clamp(depth_ + depth_step_ * place[lane], 0.0, 1.0));
+        result[lane] = static_cast<float>(std::clamp(depth_ + depth_step_ * place[lane], lowest_, highest_));
     return result;
 }
 

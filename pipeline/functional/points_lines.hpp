@@ -72,7 +72,8 @@ CoveredQuads quads_of_line(const RasterLine& line, const PixelBounds& drawn);
 /// pixels across a wide line have those of the first.
 class LinePlane {
   public:
-    LinePlane(const RasterLine& line, const ScreenVertex& from, const ScreenVertex& to);
+    /// Depths are kept between what the state says.
+    LinePlane(const RasterLine& line, const ScreenVertex& from, const ScreenVertex& to, const DepthState& state);
 
     Lanes depths(std::int32_t x, std::int32_t y) const;
     CornerWeights weights(std::int32_t x, std::int32_t y) const;
@@ -85,6 +86,7 @@ class LinePlane {
     double major_, minor_;           ///< of the first end, in pixels
     double step_major_, step_minor_; ///< of the place, per pixel
     double depth_, depth_step_;
+    double lowest_, highest_; ///< depths
     double w_from_, w_to_;
 };
 

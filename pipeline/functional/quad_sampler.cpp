@@ -305,9 +305,13 @@ glm::vec4 QuadSampler::stored(const Reads& reads, std::size_t lane, std::int32_t
 // A surface that is no cube may be read as one: what it does not have is the border.
 glm::vec4 QuadSampler::stored(std::int32_t column, std::int32_t row, std::uint32_t plane, std::uint32_t level) {
     if (plane >= info_.planes_of(level) || static_cast<std::uint32_t>(row) >= info_.height_of(level)) return outside_;
-    const SurfacePlace place{static_cast<std::uint32_t>(column),
-                             plane * info_.rows_between_planes(level) + static_cast<std::uint32_t>(row), level};
-    const std::byte* bytes = surfaces_.read_texel(view_.slot, place);
+    const auto x = static_cast<std::uint32_t>(column), y = static_cast<std::uint32_t>(row);
+    const auto part = std::find_if(view_.parts.begin(), view_.parts.end(),
+                                   [&](const TexturePart& one) { return one.level == level && one.plane == plane; });
+    const std::byte* bytes =
+        part != view_.parts.end()
+            ? surfaces_.read_texel(part->slot, {x, y, 0})
+            : surfaces_.read_texel(view_.slot, {x, plane * info_.rows_between_planes(level) + y, level});
     return integers_ ? as_lanes(unpack_integers(info_.format, bytes)) : unpack_texel(info_.format, bytes);
 }
 

@@ -4,6 +4,7 @@
 #include "pipeline/functional/parallel.hpp"
 #include "pipeline/sample_planes.hpp"
 #include "sim/check.hpp"
+#include "sim/large_pages.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -24,8 +25,7 @@ class GroupShading {
           stream_(stream),
           quads_(stream.quads.own()),
           depths_(shape.sets_depth ? &stream.depths.own() : nullptr),
-          access_(surfaces, pass.reads),
-          outputs_(shape.outputs) {}
+          access_(surfaces, pass.reads) {}
 
     /// Returns how many fragments were discarded.
     std::uint64_t run(std::size_t begin, std::size_t end) {
@@ -54,8 +54,7 @@ class GroupShading {
             if (depths_ != nullptr)
                 for (std::size_t lane = 0; lane < 4; ++lane)
                     (*depths_)[quad][lane] = output.depth[lane] > 0.0F ? std::min(output.depth[lane], 1.0F) : 0.0F;
-            for (std::uint32_t number = 0; number < outputs_; ++number)
-                (number == 0 ? stream_.colours : stream_.more_outputs[number - 1])[quad] = output.colours[number];
+            keep_outputs(output, static_cast<QuadId>(quad), stream_);
         }
         return discarded;
     }
@@ -65,7 +64,6 @@ class GroupShading {
     std::vector<Quad>& quads_;                  ///< its own
     std::vector<std::array<float, 4>>* depths_; ///< its own, where the shader sets them
     SurfaceAccess access_;
-    std::uint32_t outputs_;
 };
 
 } // namespace
@@ -83,8 +81,36 @@ ShaderInput shader_input(const FragmentStream& stream, QuadId first) {
     input.depth = stream.depths[first];
     if (!stream.given_colours.empty()) input.colour = stream.given_colours[first];
     if (!stream.given_normals.empty()) input.normal = stream.given_normals[first];
-    input.varyings = {stream.given_varyings.data() + std::size_t{first} * stream.varyings, stream.varyings};
+    if (!stream.given_texcoords.empty()) {
+        input.texcoords = stream.given_texcoords[first];
+        input.tangent = stream.given_tangents[first];
+    }
+    input.varyings = stream.varyings_of(first);
     return input;
+}
+
+void make_outputs(const ShaderShape& shape, FragmentStream& stream) {
+    const std::size_t quads = stream.quads.size();
+    sim::resize_in_large_pages(stream.colours, quads);
+    stream.more_outputs.resize(shape.outputs - 1);
+    for (auto& output : stream.more_outputs) sim::resize_in_large_pages(output, quads);
+}
+
+void keep_outputs(const ShaderOutput& output, QuadId quad, FragmentStream& stream) {
+    stream.colours[quad] = output.colours[0];
+    for (std::size_t i = 0; i < stream.more_outputs.size(); ++i) stream.more_outputs[i][quad] = output.colours[i + 1];
+}
+
+bool shades_late(const Pass& pass, const FragmentStream& stream) {
+    if (pass.kind != PassKind::screen || pass.shader == nullptr || pass.runs_program() || stream.samples != 1)
+        return false;
+    const ShaderShape shape = pass.shader->shape();
+    const auto is_written = [&pass](SurfaceId surface) {
+        return surface == pass.depth ||
+               std::find(pass.targets.begin(), pass.targets.end(), surface) != pass.targets.end();
+    };
+    return pass.reads_surfaces() && !shape.discards && !shape.sets_depth &&
+           std::none_of(pass.reads.begin(), pass.reads.end(), is_written);
 }
 
 void shade(const Pass& pass, FragmentStream& stream, const SurfaceStore& surfaces, unsigned threads) {
@@ -97,9 +123,7 @@ void shade(const Pass& pass, FragmentStream& stream, const SurfaceStore& surface
     const std::size_t quads = stream.quads.size();
     stream.quads.own(); // before several threads ask for them
     if (shape.sets_depth) stream.depths.own();
-    stream.colours.resize(quads);
-    stream.more_outputs.resize(shape.outputs - 1);
-    for (auto& output : stream.more_outputs) output.resize(quads);
+    make_outputs(shape, stream);
     std::atomic<std::uint64_t> discarded{0};
     parallel_for(threads, (quads + quads_of_piece - 1) / quads_of_piece, [&](std::size_t piece) {
         GroupShading shading(pass, stream, surfaces, shape);

@@ -64,6 +64,10 @@ FragmentShader::FragmentShader(const Resources& resources, const Geometry& geome
     colours_ = reader(resources, geometry, reads_colour, Semantic::colour, instance);
     const bool textured = options.textures && reads_colour && material.base_texture >= 0;
     texcoords_ = reader(resources, geometry, textured && !options.sprites, texcoord(material.texcoord), instance);
+    for (std::uint32_t set = 0; options.map_texcoords && set < map_sets_.size(); ++set)
+        map_sets_[set] = reader(resources, geometry, material.maps.read(set), texcoord(set), instance);
+    const MaterialMap& normal = material.maps.normal;
+    if (options.map_texcoords && normal.there() && map_sets_.at(normal.texcoord)) normal_map_ = &normal;
     if ((texcoords_ || (textured && options.sprites)) && needed())
         sampler_.emplace(resources.textures[static_cast<std::size_t>(material.base_texture)]);
 }
@@ -80,7 +84,36 @@ ShaderCorner FragmentShader::corner(std::uint32_t vertex) const {
         const glm::vec4 raw = (*texcoords_)(vertex);
         result.texcoord = bounded_vector(glm::vec2(texcoord_matrix_ * glm::vec3(raw.x, raw.y, 1.0F)), largest_texcoord);
     }
+    for (std::size_t set = 0; set < map_sets_.size(); ++set) {
+        if (!map_sets_[set]) continue;
+        const glm::vec2 raw = bounded_vector(glm::vec2((*map_sets_[set])(vertex)), largest_texcoord);
+        result.map_texcoords[static_cast<int>(2 * set)] = raw.x;
+        result.map_texcoords[static_cast<int>(2 * set + 1)] = raw.y;
+    }
     return result;
+}
+
+// Positions are a linear function of texture coordinates over a triangle: P(u, v) = P0 + u T + v V. The bitangent of a
+// normal map runs against v, which grows downwards (glTF 2.0, section 3.7.2.1: bitangent = w * cross(normal, tangent)).
+glm::vec4 FragmentShader::tangent(const std::array<std::uint32_t, 3>& vertices, const ShaderTriangle& triangle) const {
+    std::array<glm::dvec3, 3> at;
+    std::array<glm::dvec2, 3> uv;
+    glm::dvec3 outside(triangle.face_normal);
+    for (std::size_t i = 0; i < 3; ++i) {
+        const glm::vec4& sets = triangle.corners[i].map_texcoords;
+        const glm::vec2 raw = normal_map_->texcoord == 0 ? glm::vec2(sets.x, sets.y) : glm::vec2(sets.z, sets.w);
+        at[i] = glm::dvec3(model_to_eye_ * glm::dvec4(glm::dvec3(positions_(vertices[i])), 1.0));
+        uv[i] = glm::dvec2(normal_map_->uv_transform * glm::vec3(raw, 1.0F));
+        if (normals_) outside += glm::dvec3(triangle.corners[i].normal);
+    }
+    const glm::dvec3 a = at[1] - at[0], b = at[2] - at[0];
+    const glm::dvec2 s = uv[1] - uv[0], t = uv[2] - uv[0];
+    const double area = s.x * t.y - t.x * s.y;
+    const glm::dvec3 along = (a * t.y - b * s.y) * (area < 0.0 ? -1.0 : 1.0);
+    const double length = glm::length(along);
+    if (area == 0.0 || !(length > 0.0) || !std::isfinite(length)) return glm::vec4(0.0F);
+    const bool outwards = glm::dot(outside, glm::cross(a, b)) > 0.0;
+    return {glm::vec3(along / length), outwards == (area > 0.0) ? -1.0F : 1.0F};
 }
 
 glm::vec3 FragmentShader::face_normal(const std::array<std::uint32_t, 3>& vertices) const {
@@ -101,6 +134,7 @@ ShaderTriangle FragmentShader::triangle(const std::array<std::uint32_t, 3>& vert
         }
     if ((lit_ || cosine_ || options_.normals) && !normals_) result.face_normal = face_normal(vertices);
     if (lit_ && result.face_normal != glm::vec3(0.0F)) result.face_light = lambert(std::fabs(result.face_normal.z));
+    if (normal_map_ != nullptr) result.tangent = tangent(vertices, result);
     if (weights == nullptr) return result;
 
     const std::array<ShaderCorner, 3> whole = result.corners;
@@ -110,6 +144,8 @@ ShaderTriangle FragmentShader::triangle(const std::array<std::uint32_t, 3>& vert
         result.corners[i].normal = whole[0].normal * w.x + whole[1].normal * w.y + whole[2].normal * w.z;
         result.corners[i].colour = whole[0].colour * w.x + whole[1].colour * w.y + whole[2].colour * w.z;
         result.corners[i].texcoord = whole[0].texcoord * w.x + whole[1].texcoord * w.y + whole[2].texcoord * w.z;
+        result.corners[i].map_texcoords =
+            whole[0].map_texcoords * w.x + whole[1].map_texcoords * w.y + whole[2].map_texcoords * w.z;
     }
     return result;
 }
@@ -211,6 +247,14 @@ FragmentShader::Output FragmentShader::shade(const ShaderTriangle& triangle, con
             const double length = glm::length(normal[lane]);
             if ((covered >> lane & 1U) != 0 && length > 0.0 && std::isfinite(length))
                 output.normals[lane] = glm::vec4(normal[lane] / length, 0.0);
+        }
+    }
+    if (gives_texcoords()) {
+        const auto& c = triangle.corners;
+        for (int i = 0; i < 4; ++i) {
+            const Lanes values =
+                weights.interpolate(c[0].map_texcoords[i], c[1].map_texcoords[i], c[2].map_texcoords[i]);
+            for (std::size_t lane = 0; lane < 4; ++lane) output.texcoords[lane][i] = values[lane];
         }
     }
     for (std::size_t lane = 0; lane < 4; ++lane) {

@@ -29,6 +29,7 @@ ShaderCost shader_cost(const Material& material, const Geometry& geometry, const
 struct ShaderOptions {
     bool colours = true;
     bool normals = false;
+    bool map_texcoords = false; ///< of the material's maps, where it has some
     FragmentColour fragment_colour = FragmentColour::lit;
     bool perspective = true; ///< the directions to the eye meet there; else they are parallel
     bool textures = true;
@@ -41,7 +42,8 @@ struct ShaderCorner {
     glm::vec3 position{}; ///< eye space; for cosines
     glm::vec3 normal{};   ///< eye space, any length
     glm::vec4 colour{1.0F};
-    glm::vec2 texcoord{}; ///< transformed by the material
+    glm::vec2 texcoord{};      ///< transformed by the material
+    glm::vec4 map_texcoords{}; ///< {u, v} of set 0, then of set 1, as the vertex has them
 };
 
 /// A primitive part ready for shading.
@@ -49,6 +51,7 @@ struct ShaderTriangle {
     std::array<ShaderCorner, 3> corners;
     float face_light = 1.0F; ///< where there are no vertex normals
     glm::vec3 face_normal{}; ///< eye space, of unit length or none; where cosines or normals are wanted
+    glm::vec4 tangent{};     ///< see ShaderInput::tangent
 };
 
 /// The shader of one instance of one draw.
@@ -58,7 +61,9 @@ class FragmentShader {
                    const glm::mat4& model_to_eye, const ShaderOptions& options, std::uint32_t instance = 0);
 
     /// True when shade() must be called: a colour or normal is wanted, or fragments may be discarded.
-    bool needed() const { return options_.colours || options_.normals || discards_; }
+    bool needed() const { return options_.colours || options_.normals || discards_ || gives_texcoords(); }
+    /// True when it gives coordinates of maps.
+    bool gives_texcoords() const { return map_sets_[0] || map_sets_[1]; }
     /// True when shade() reads the texture.
     bool samples() const { return sampler_.has_value(); }
 
@@ -68,10 +73,11 @@ class FragmentShader {
                             std::size_t provoking = 2) const;
 
     struct Output {
-        std::array<glm::vec4, 4> colours;   ///< linear RGBA; 0 where not covered
-        std::array<glm::vec4, 4> normals{}; ///< eye space, of unit length or 0; 0 where not covered or not asked for
-        std::uint8_t alive = 0;             ///< covered and not discarded
-        std::uint32_t texture_line = ~0U;   ///< of the first covered pixel; ~0 = no texture read
+        std::array<glm::vec4, 4> colours;     ///< linear RGBA; 0 where not covered
+        std::array<glm::vec4, 4> normals{};   ///< eye space, of unit length or 0; 0 where not covered or not asked for
+        std::array<glm::vec4, 4> texcoords{}; ///< see ShaderInput::texcoords
+        std::uint8_t alive = 0;               ///< covered and not discarded
+        std::uint32_t texture_line = ~0U;     ///< of the first covered pixel; ~0 = no texture read
     };
     /// Shades the covered pixels of a quad.
     Output shade(const ShaderTriangle& triangle, const CornerWeights& weights, unsigned covered) const;
@@ -79,6 +85,7 @@ class FragmentShader {
   private:
     ShaderCorner corner(std::uint32_t vertex) const;
     glm::vec3 face_normal(const std::array<std::uint32_t, 3>& vertices) const;
+    glm::vec4 tangent(const std::array<std::uint32_t, 3>& vertices, const ShaderTriangle& triangle) const;
     std::array<glm::dvec3, 4> normals(const ShaderTriangle& triangle, const CornerWeights& weights) const;
     Lanes cosines(const ShaderTriangle& triangle, const CornerWeights& weights) const;
     Lanes light(const ShaderTriangle& triangle, const CornerWeights& weights) const;
@@ -89,6 +96,8 @@ class FragmentShader {
     ShaderOptions options_;
     AttributeReader positions_;
     std::optional<AttributeReader> normals_, colours_, texcoords_;
+    std::array<std::optional<AttributeReader>, 2> map_sets_; ///< texture coordinates 0 and 1, where maps read them
+    const MaterialMap* normal_map_ = nullptr;                ///< where its coordinates are given
     std::optional<TextureSampler> sampler_;
     glm::dmat4 model_to_eye_;
     glm::dmat3 normal_matrix_; ///< model to eye space, of unit size

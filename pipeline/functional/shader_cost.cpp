@@ -12,6 +12,16 @@ ShaderCost shader_cost(const Material& material, const Geometry& geometry, const
         cost.alu += (smooth ? 1U : 4U) + 3U;
         cost.registers += smooth ? 1U : 2U;
     }
+    const MaterialMaps& maps = material.maps;
+    const auto has = [&](std::uint32_t set) { return geometry.find(texcoord(set)) != nullptr; };
+    if (needs.map_texcoords && ((maps.read(0) && has(0)) || (maps.read(1) && has(1)))) {
+        cost.alu += 1; // both sets are interpolated together
+        cost.registers += 1;
+        if (maps.normal.there() && has(maps.normal.texcoord)) {
+            cost.alu += 1U + 4U + 2U; // position; its derivatives and those of the coordinates; their combination
+            cost.registers += 1;
+        }
+    }
     if (!needs.colours && !tests) return cost;
     if (needs.colours && needs.fragment_colour == FragmentColour::flat) return cost;
 

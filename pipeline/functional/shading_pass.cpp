@@ -13,6 +13,7 @@
 #include "pipeline/functional/raster_triangle.hpp"
 #include "pipeline/functional/shader.hpp"
 #include "pipeline/functional/varyings.hpp"
+#include "sim/large_pages.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -33,6 +34,7 @@ ShaderOptions shader_options(const FrontEndPlan& plan, const PlannedInstance& in
     const bool flat = options.fragment_colour == FragmentColour::flat;
     return {.colours = options.colours,
             .normals = options.normals,
+            .map_texcoords = options.map_texcoords,
             .fragment_colour = options.fragment_colour,
             .perspective = plan.view.projection[2][3] != 0.0F,
             .textures = options.textures && !flat,
@@ -113,8 +115,12 @@ class Shading {
     void enter_varyings(const std::array<std::uint32_t, 3>& vertices, const PrimitivePart& part,
                         const std::array<glm::vec3, 3>* clipped, std::size_t provoking) {
         std::array<std::span<const glm::vec4>, 3> given;
-        for (std::size_t i = 0; i < 3; ++i) given[i] = plan_.varyings_of(*instance_, vertices[i]);
-        varyings_.begin(plan_.runs[instance_->run].shape, given, part.corners, clipped, provoking);
+        glm::vec3 w(0.0F);
+        for (std::size_t i = 0; i < 3; ++i) {
+            given[i] = plan_.varyings_of(*instance_, vertices[i]);
+            w[static_cast<int>(i)] = plan_.vertex_of(*instance_, vertices[i]).clip.w;
+        }
+        varyings_.begin(plan_.runs[instance_->run].shape, given, w, part.corners, clipped, provoking);
     }
 
     void set_up_part(const PrimitivePart& part) {
@@ -122,11 +128,12 @@ class Shading {
         corners_ = corners_of(instance_->geometry->topology);
         if (corners_ == 2) {
             line_.emplace(RasterLine(part.corners[0], part.corners[1], state.state->line_width), part.corners[0],
-                          part.corners[1]);
+                          part.corners[1], state.state->depth);
             return;
         }
         raster_ = set_up(part.corners[0], part.corners[1], part.corners[2], state.viewport);
         depth_.emplace(raster_, part.corners);
+        depth_->bound(state.state->depth);
         if (corners_ == 3) depth_->add_bias(state.state->depth, plan_.options.depth_step);
         if (program_ || shades()) attributes_.emplace(raster_, part.corners);
     }
@@ -152,8 +159,11 @@ class Shading {
             covered |= quad.covered;
         }
         if (program_) {
-            const std::size_t each = stream_.varyings;
-            const std::span given(stream_.given_varyings.own().data() + first * each, each * group.size());
+            const auto of_first = stream_.varyings_of(static_cast<QuadId>(first));
+            const std::size_t each = of_first.size();
+            const std::span given(stream_.given_varyings.own().data() +
+                                      (of_first.data() - stream_.given_varyings.data()),
+                                  each * group.size());
             varyings_.interpolate(weights(x, y, covered, group), corners_ == 1, given);
             for (std::size_t n = 1; n < group.size(); ++n) std::copy_n(given.data(), each, given.data() + n * each);
         }
@@ -163,6 +173,10 @@ class Shading {
             group[n].alive &= output.alive;
             if (!stream_.colours.empty()) stream_.colours[first + n] = output.colours;
             if (!stream_.given_normals.empty()) stream_.given_normals.own()[first + n] = output.normals;
+            if (!stream_.given_texcoords.empty()) {
+                stream_.given_texcoords.own()[first + n] = output.texcoords;
+                stream_.given_tangents.own()[first + n] = triangle_.tangent;
+            }
             if (!stream_.texture_lines.empty()) stream_.texture_lines.own()[first + n] = output.texture_line;
         }
     }
@@ -199,14 +213,47 @@ class Shading {
     std::uint32_t current_triangle_ = 0;
 };
 
+/// What the quads of the stream take, the textures' lines aside.
+std::uint64_t bytes_of_quads(const FrontEndOptions& options, const FragmentStream& stream, std::uint64_t varyings) {
+    constexpr std::uint64_t value = sizeof(std::array<glm::vec4, 4>);
+    const std::uint64_t values =
+        (options.colours ? 1U : 0U) + (options.normals ? 1U : 0U) + (options.map_texcoords ? 1U : 0U);
+    const std::uint64_t tangent = options.map_texcoords ? sizeof(glm::vec4) : 0;
+    return stream.quads.size() * (sizeof(Quad) + sizeof(std::array<float, 4>) + tangent + values * value) +
+           varyings * value;
+}
+
+/// Returns how many there are.
+std::uint64_t lay_out_varyings(const FrontEndPlan& plan, FragmentStream& stream) {
+    std::uint64_t all = 0;
+    std::vector<VaryingRun> runs;
+    for (std::size_t i = 0; i < plan.instances.size(); ++i) {
+        const DrawRange& range = stream.draws[i];
+        const PlannedVertices& vertices = plan.runs[plan.instances[i].run];
+        const std::uint32_t each = vertices.program == nullptr ? 0 : vertices.shape.varyings + 1;
+        if (range.quads == 0) continue;
+        if (runs.empty() || runs.back().each != each) runs.push_back({range.first_quad, each, all});
+        all += std::uint64_t{range.quads} * each;
+    }
+    if (all != 0) stream.varying_runs = std::move(runs);
+    return all;
+}
+
 } // namespace
 
 void shading_pass(FrontEndPlan& plan, FragmentStream& stream) {
     const std::size_t quads = stream.quads.size();
-    stream.depths.own().resize(quads);
-    if (plan.options.colours) stream.colours.resize(quads);
-    if (plan.options.normals) stream.given_normals.own().resize(quads);
-    stream.given_varyings.own().resize(quads * stream.varyings);
+    const std::uint64_t varyings = lay_out_varyings(plan, stream);
+    if (plan.options.about_to_shade)
+        plan.options.about_to_shade(stream, bytes_of_quads(plan.options, stream, varyings));
+    sim::resize_in_large_pages(stream.depths.own(), quads);
+    if (plan.options.colours) sim::resize_in_large_pages(stream.colours, quads);
+    if (plan.options.normals) sim::resize_in_large_pages(stream.given_normals.own(), quads);
+    if (plan.options.map_texcoords) {
+        sim::resize_in_large_pages(stream.given_texcoords.own(), quads);
+        sim::resize_in_large_pages(stream.given_tangents.own(), quads);
+    }
+    sim::resize_in_large_pages(stream.given_varyings.own(), varyings);
     if (textures_are_read(plan)) stream.texture_lines.own().resize(quads, ~0U);
 
     const std::size_t pieces = (quads + quads_per_piece - 1) / quads_per_piece;

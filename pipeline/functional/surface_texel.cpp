@@ -205,6 +205,22 @@ glm::vec4 unpack_texel(SurfaceFormat format, const std::byte* source) {
     return colour;
 }
 
+std::array<glm::vec4, 4> unpack_texels(SurfaceFormat format, const std::array<const std::byte*, 4>& sources) {
+    std::array<glm::vec4, 4> colours{};
+    const bool halves = format == SurfaceFormat::rgba16f; // of most surfaces on the way to a picture
+    for (std::size_t i = 0; i < sources.size(); ++i) {
+        if (sources[i] == nullptr) continue;
+        if (!halves) {
+            colours[i] = unpack_texel(format, sources[i]);
+            continue;
+        }
+        const auto codes = load<std::array<std::uint16_t, 4>>(sources[i]);
+        colours[i] = {half_to_float(codes[0]), half_to_float(codes[1]), half_to_float(codes[2]),
+                      half_to_float(codes[3])};
+    }
+    return colours;
+}
+
 glm::vec4 through_format(SurfaceFormat format, const glm::vec4& colour, Fp16Overflow overflow) {
     std::array<std::byte, largest_texel> bytes{};
     pack_colour(format, colour, bytes.data(), overflow);

@@ -7,6 +7,7 @@
 
 #include "pipeline/surface_format.hpp"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec4.hpp>
@@ -23,6 +24,9 @@ void pack_colour(SurfaceFormat format, const glm::vec4& colour, std::byte* targe
 /// What a texture read of the texel gives: linear colour, or the depth, or integers as numbers. Missing channels read
 /// 0, 0, 0, 1.
 glm::vec4 unpack_texel(SurfaceFormat format, const std::byte* source);
+
+/// The same of the texels of a quad; of null: 0 in all channels.
+std::array<glm::vec4, 4> unpack_texels(SurfaceFormat format, const std::array<const std::byte*, 4>& sources);
 
 /// The colour that is read back after storing `colour`.
 glm::vec4 through_format(SurfaceFormat format, const glm::vec4& colour, Fp16Overflow overflow = Fp16Overflow::saturate);

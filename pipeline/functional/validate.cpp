@@ -136,6 +136,13 @@ void validate_texture(const Texture& texture, const Complaint& complain) {
     }
 }
 
+bool is_finite(const glm::mat3& matrix) {
+    for (int column = 0; column < 3; ++column)
+        for (int row = 0; row < 3; ++row)
+            if (!std::isfinite(matrix[column][row])) return false;
+    return true;
+}
+
 void validate_material(const Resources& resources, const Material& material, const Complaint& complain) {
     const auto textures = static_cast<std::int64_t>(resources.textures.size());
     complain.require(material.base_texture >= -1 && material.base_texture < textures,
@@ -143,8 +150,17 @@ void validate_material(const Resources& resources, const Material& material, con
     complain.require(material.texcoord < texcoord_sets, "texture coordinates 0 to 7, not {}", material.texcoord);
     bool finite = std::isfinite(material.alpha_cutoff) && std::isfinite(material.transmission);
     for (int i = 0; i < 4; ++i) finite = finite && std::isfinite(material.base_colour[i]);
-    for (int column = 0; column < 3; ++column)
-        for (int row = 0; row < 3; ++row) finite = finite && std::isfinite(material.uv_transform[column][row]);
+    finite = finite && is_finite(material.uv_transform);
+    const MaterialMaps& maps = material.maps;
+    const auto last = static_cast<std::int64_t>(resources.maps.size()) - 1;
+    for (const MaterialMap* map : maps.all()) {
+        complain.require(map->texture >= -1 && map->texture <= last, "maps of -1 to {}, not {}", last, map->texture);
+        complain.require(map->texcoord < 2, "maps at texture coordinates 0 or 1, not {}", map->texcoord);
+        finite = finite && is_finite(map->uv_transform);
+    }
+    for (const float factor : {maps.normal_scale, maps.metallic_factor, maps.roughness_factor, maps.specular_factor,
+                               maps.emissive_factor.r, maps.emissive_factor.g, maps.emissive_factor.b})
+        finite = finite && std::isfinite(factor);
     complain.require(finite, "finite numbers");
 }
 
@@ -165,6 +181,9 @@ void Resources::validate(const std::string& where, Positions positions) const {
                           Complaint(where, part_name("geometry", i, geometries[i].name)));
     for (std::size_t i = 0; i < textures.size(); ++i)
         validate_texture(textures[i], Complaint(where, part_name("texture", i, textures[i].name)));
+    for (std::size_t i = 0; i < maps.size(); ++i)
+        if (!maps[i].make)
+            validate_texture(maps[i].texture, Complaint(where, part_name("map", i, maps[i].texture.name)));
     for (std::size_t i = 0; i < materials.size(); ++i)
         validate_material(*this, materials[i], Complaint(where, part_name("material", i, materials[i].name)));
 }

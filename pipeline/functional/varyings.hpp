@@ -13,10 +13,11 @@ namespace pipeline {
 
 class VaryingPlanes {
   public:
-    /// Takes the varyings of a primitive's vertices. `weights`: see PrimitivePart; null when not clipped.
+    /// Takes the varyings of a primitive's vertices, and their w of clip space. `weights`: see PrimitivePart; null when
+    /// not clipped.
     void begin(const VertexProgramShape& shape, const std::array<std::span<const glm::vec4>, 3>& vertices,
-               const std::array<ScreenVertex, 3>& corners, const std::array<glm::vec3, 3>* weights,
-               std::size_t provoking);
+               const glm::vec3& w_of_vertices, const std::array<ScreenVertex, 3>& corners,
+               const std::array<glm::vec3, 3>* weights, std::size_t provoking);
 
     /// Those of the pixels of a quad, behind what ShaderInput::varyings begins with.
     /// @param point the weights run over the square of a point

@@ -34,8 +34,17 @@ bool is_usable(const PixelRectangle& viewport) {
     return near_view(viewport.x) && near_view(viewport.y) && sized(viewport.width) && sized(viewport.height);
 }
 
+bool is_usable(const DepthState& state) {
+    const auto good = [](float depth) { return depth >= 0.0F && depth <= 1.0F; }; // false for NaN
+    return good(state.range_near) && good(state.range_far);
+}
+
 Viewport::Viewport(std::uint32_t view_width, std::uint32_t view_height, const RasterState& state)
-    : clamps_depth_(state.depth.clamp) {
+    : half_depth_((state.depth.range_far - state.depth.range_near) * 0.5F),
+      middle_depth_((state.depth.range_near + state.depth.range_far) * 0.5F),
+      least_depth_(std::min(state.depth.range_near, state.depth.range_far)),
+      greatest_depth_(std::max(state.depth.range_near, state.depth.range_far)),
+      clamps_depth_(state.depth.clamp) {
     const PixelRectangle whole{0, 0, view_width, view_height};
     const PixelRectangle viewport = state.viewport.value_or(whole);
     const PixelBounds view{0, 0, static_cast<std::int32_t>(view_width), static_cast<std::int32_t>(view_height)};
@@ -76,10 +85,11 @@ void Viewport::project(ScreenVertex& vertex) const {
     // Row 0 is the top row: y is negated before the viewport, where negation is exact. Pixel centres lie at halves.
     vertex.window.x = std::fma(vertex.clip.x * inverse, half_width_, middle_x_) - 0.5F;
     vertex.window.y = std::fma(-(vertex.clip.y * inverse), half_height_, middle_y_) - 0.5F;
-    const float depth = std::fma(vertex.clip.z * inverse, 0.5F, 0.5F);
+    const float depth = std::fma(vertex.clip.z * inverse, half_depth_, middle_depth_);
     vertex.x = snap(vertex.window.x);
     vertex.y = snap(vertex.window.y);
-    vertex.depth = clamps_depth_ ? std::clamp(depth, -largest_depth, largest_depth) : std::clamp(depth, 0.0F, 1.0F);
+    vertex.depth = clamps_depth_ ? std::clamp(depth, -largest_depth, largest_depth)
+                                 : std::clamp(depth, least_depth_, greatest_depth_);
 }
 
 glm::mat4 clip_matrix(const View& view, const glm::mat4& model) {

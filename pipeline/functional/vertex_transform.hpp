@@ -44,7 +44,7 @@ struct ScreenVertex {
     glm::vec4 clip{};          ///< clip coordinates, y up
     std::int32_t x = 0, y = 0; ///< sub-pixel units from the centre of pixel (0, 0), y down; valid unless must_clip
     glm::vec2 window{};        ///< the same in pixels, before it was snapped
-    float depth = 0;           ///< window depth in [0,1], of any size where depths are clamped
+    float depth = 0;           ///< window depth within the state's range, of any size where depths are clamped
     std::uint32_t outside = 0; ///< bits of namespace outside
 };
 
@@ -61,7 +61,7 @@ class Viewport {
   public:
     /// One that fills a view of this size in pixels, 1 to largest_viewport.
     Viewport(std::uint32_t width, std::uint32_t height) : Viewport(width, height, RasterState{}) {}
-    /// The viewport, scissor and depth clamp of a state, which is_usable(), in a view.
+    /// The viewport, scissor, depth range and depth clamp of a state, which is_usable(), in a view.
     Viewport(std::uint32_t view_width, std::uint32_t view_height, const RasterState& state);
 
     /// The pixels of the view that lie in the viewport: what is wholly outside of them is culled.
@@ -87,11 +87,15 @@ class Viewport {
     float half_width_, half_height_;
     float middle_x_, middle_y_; ///< pixels from the view's top left corner
     float guard_x_, guard_y_;
+    float half_depth_, middle_depth_;    ///< from the middle of the depth range to the far plane
+    float least_depth_, greatest_depth_; ///< of what is not clamped later
     bool clamps_depth_;
 };
 
 /// True where the viewport of a state is one that coordinates on the sub-pixel grid have room for.
 bool is_usable(const PixelRectangle& viewport);
+/// True where both ends of the depth range lie within 0 and 1.
+bool is_usable(const DepthState& state);
 
 /// projection * view * model, multiplied in binary64 and rounded once.
 glm::mat4 clip_matrix(const View& view, const glm::mat4& model);

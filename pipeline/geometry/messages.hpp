@@ -41,6 +41,7 @@ struct ReusedPrimitive {
 /// Vertex fetch -> vertex shader -> primitive assembly; in order of the sequence numbers.
 struct VertexTask {
     std::uint32_t sequence = 0;
+    std::uint32_t instructions = 0; ///< of its shader; 0: of the fixed transformation. Not behind the shader units
 };
 
 /// Primitive assembly -> clipping and culling.

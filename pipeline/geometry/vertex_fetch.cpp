@@ -44,7 +44,7 @@ void VertexFetch::begin_range(std::uint32_t range) {
 
 void VertexFetch::begin_vertex(const VertexRequest& request) {
     if (request.range != range_ || pass_->number != pass_number_) begin_range(request.range);
-    present_ = {request.sequence, 0};
+    present_ = {request.sequence, 0, pass_->range(request.range).vertex_instructions};
     lines_.begin(request.vertex);
     if (request.sequence == 0) lines_.end();
     port_cost_ = request.index_bytes * cost_.index_byte + (request.sequence == 0 ? 0 : cost_.vertex);
@@ -130,7 +130,7 @@ bool VertexFetch::take_fills() {
 bool VertexFetch::deliver() {
     bool progress = false;
     while (deliverable() && vertices_out.ready()) {
-        vertices_out.send({waiting_.front().sequence});
+        vertices_out.send({waiting_.front().sequence, waiting_.front().instructions});
         waiting_.pop();
         ++stats_.vertices;
         progress = true;

@@ -90,6 +90,7 @@ class VertexFetch final : public sim::Component {
     struct Waiting {
         std::uint32_t sequence = 0;
         std::uint64_t last_fill = 0;
+        std::uint32_t instructions = 0; ///< of its shader
     };
 
     sim::Activity tick() override;

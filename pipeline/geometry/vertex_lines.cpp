@@ -15,7 +15,9 @@ bool reads_attribute(const Needs& needs, const Material& material, Semantic sema
     case Slot::colour:
         return needs.vertex_colours && semantic == Semantic::colour;
     case Slot::texcoord:
-        return needs.texcoords && semantic == texcoord(material.texcoord);
+        return (needs.texcoords && semantic == texcoord(material.texcoord)) ||
+               (needs.map_texcoords && material.maps.read(static_cast<std::uint32_t>(semantic) -
+                                                          static_cast<std::uint32_t>(Semantic::texcoord0)));
     case Slot::generic:
         break;
     }

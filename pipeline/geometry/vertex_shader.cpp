@@ -15,10 +15,11 @@ sim::Activity VertexShader::tick() {
     while (!runs_.full()) {
         const VertexTask* task = vertices_in.peek();
         if (task == nullptr) break;
-        runs_.push({task->sequence, cycle() + params_.cycles_per_vertex});
+        const std::uint64_t cycles = params_.cycles_for(task->instructions);
+        runs_.push({task->sequence, cycle() + cycles});
         vertices_in.pop();
         ++stats_.vertices;
-        stats_.unit_cycles += params_.cycles_per_vertex;
+        stats_.unit_cycles += cycles;
         progress = true;
     }
     if (progress) return sim::Activity::busy;

@@ -21,6 +21,7 @@ constexpr std::uint32_t reads = 0, writes = 1; ///< directions
 DramChannel::DramChannel(const DramParams& params, double bandwidth, sim::Time cycle, std::uint32_t write_queue)
     : row_bytes_(params.row_bytes),
       burst_bytes_(params.burst_bytes),
+      bank_count_(params.banks),
       overtakes_(params.overtakes),
       write_batch_(params.write_batch),
       read_batch_(params.read_batch),
@@ -41,18 +42,17 @@ DramChannel::DramChannel(const DramParams& params, double bandwidth, sim::Time c
       next_refresh_(refi_ == 0 ? never : refi_),
       write_queue_(write_queue),
       banks_(params.banks) {
-    CHECK(bandwidth > 0 && row_bytes_ > 0 && burst_bytes_ > 0 && !banks_.empty());
+    CHECK(bandwidth > 0);
     for (Bank& bank : banks_)
         for (auto& requests : bank.requests) requests.reserve(write_queue);
 }
 
 // The sum of the digits of the row number to the base `banks`.
 std::uint32_t DramChannel::bank_of_row(std::uint64_t row) const {
-    const std::uint64_t banks = banks_.size();
-    if (banks == 1) return 0;
+    if (bank_count_.number() == 1) return 0;
     std::uint64_t sum = 0;
-    for (; row != 0; row /= banks) sum += row;
-    return static_cast<std::uint32_t>(sum % banks);
+    for (; row != 0; row = bank_count_.quotient(row)) sum += row;
+    return static_cast<std::uint32_t>(bank_count_.remainder(sum));
 }
 
 // Order to one address: what shares a burst with an older request of the other direction waits for it. Those of one
@@ -250,7 +250,7 @@ void DramChannel::find_first() {
 DramChannel::Transfer DramChannel::commit(Fine now) {
     Bank& bank = *first_;
     const Request request = bank.requests[direction_][bank.next];
-    bus_free_ = start_ + Fine{request.bursts} * burst_bytes_ * per_byte_;
+    bus_free_ = start_ + Fine{request.bursts} * burst_bytes_.number() * per_byte_;
     next_ = 0;
     if (direction_ != moved_) ++events_.turnarounds;
     moved_ = direction_;
@@ -279,11 +279,11 @@ void DramChannel::enqueue(std::uint64_t local, std::uint32_t bytes, bool write, 
     const Fine now = time * fine_per_time;
     activate_until(std::min(now, next_refresh_)); // before what this request changes
     Request request;
-    request.row = local / row_bytes_;
+    request.row = row_bytes_.quotient(local);
     request.number = arrivals_++;
-    request.first = local / burst_bytes_;
+    request.first = burst_bytes_.quotient(local);
     request.earliest = now + command_[direction];
-    request.bursts = burst_bytes_of(local, bytes) / burst_bytes_;
+    request.bursts = bursts_of(local, bytes);
     request.id = id;
     Bank& bank = banks_[bank_of_row(request.row)];
     if (!bank.requests[0].empty() || !bank.requests[1].empty()) note_conflicts(bank, request, direction);

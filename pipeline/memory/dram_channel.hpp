@@ -14,6 +14,7 @@
 // SDRAM: Qimonda HYB18H512321AF data sheet, 2005.
 #pragma once
 
+#include "pipeline/memory/divisor.hpp"
 #include "pipeline/memory/memory_params.hpp"
 #include "sim/time.hpp"
 
@@ -66,10 +67,9 @@ class DramChannel {
 
     /// Whole bursts that the bytes at `address` touch, in bytes.
     std::uint32_t burst_bytes_of(std::uint64_t address, std::uint32_t bytes) const {
-        const std::uint64_t last = (address + bytes - 1) / burst_bytes_;
-        return static_cast<std::uint32_t>(last - address / burst_bytes_ + 1) * burst_bytes_;
+        return bursts_of(address, bytes) * static_cast<std::uint32_t>(burst_bytes_.number());
     }
-    std::uint32_t bank_of(std::uint64_t local) const { return bank_of_row(local / row_bytes_); }
+    std::uint32_t bank_of(std::uint64_t local) const { return bank_of_row(row_bytes_.quotient(local)); }
     /// From enqueue() to the end of a lone read whose bank has no open row; `bytes` from the start of a burst.
     Fine unloaded_latency(std::uint32_t bytes) const {
         return rcd_[0] + command_[0] + burst_bytes_of(0, bytes) * per_byte_;
@@ -128,8 +128,12 @@ class DramChannel {
     void find_first();
     Transfer commit(Fine now);
 
-    std::uint64_t row_bytes_;
-    std::uint32_t burst_bytes_;
+    std::uint32_t bursts_of(std::uint64_t address, std::uint32_t bytes) const {
+        const std::uint64_t last = burst_bytes_.quotient(address + bytes - 1);
+        return static_cast<std::uint32_t>(last - burst_bytes_.quotient(address) + 1);
+    }
+
+    Divisor row_bytes_, burst_bytes_, bank_count_;
     std::uint32_t overtakes_, write_batch_, read_batch_;
     Fine cycle_;
     Fine per_byte_;

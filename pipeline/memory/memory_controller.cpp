@@ -26,7 +26,8 @@ std::uint32_t answers_of_hub(const MemoryControllerParams& params, sim::Time cor
 MemoryController::MemoryController(sim::Context context, const Params& params, const Share& share)
     : Component(std::move(context)),
       params_(params),
-      share_(share),
+      interleave_(share.interleave),
+      partitions_(share.partitions),
       core_period_(share.core_period != 0 ? share.core_period : clock().period),
       channel_(params.dram, share.bandwidth, clock().period, params.write_queue),
       random_(simulation().random_for(name())),
@@ -50,8 +51,8 @@ sim::Cycle MemoryController::unloaded_latency(std::uint32_t bytes) const {
 
 // One map for every client: the blocks of this partition, one behind the other.
 std::uint64_t MemoryController::local_address(std::uint64_t address) const {
-    const std::uint64_t block = address / share_.interleave;
-    return block / share_.partitions * share_.interleave + address % share_.interleave;
+    const std::uint64_t block = interleave_.quotient(address);
+    return partitions_.quotient(block) * interleave_.number() + interleave_.remainder(address);
 }
 
 void MemoryController::book(const MemoryRequest& request) {

@@ -118,7 +118,7 @@ class MemoryController final : public sim::Component {
 
     Params params_;
     Stats stats_;
-    Share share_;
+    Divisor interleave_, partitions_;
     sim::Time core_period_;
     DramChannel channel_;
     sim::Random random_;

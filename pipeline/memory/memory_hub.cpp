@@ -6,6 +6,7 @@ MemoryHub::MemoryHub(sim::Context context, const Params& params, std::uint32_t p
     : Component(std::move(context)),
       params_(params),
       interleave_(interleave),
+      partition_count_(partitions),
       next_client_(partitions, 0),
       reads_(params.reads_in_flight),
       wanted_(partitions) {
@@ -21,7 +22,7 @@ MemoryHub::ClientPort& MemoryHub::add_client() {
 }
 
 std::uint32_t MemoryHub::partition_of(std::uint64_t address) const {
-    return static_cast<std::uint32_t>(address / interleave_ % partitions_.size());
+    return static_cast<std::uint32_t>(partition_count_.remainder(interleave_.quotient(address)));
 }
 
 // The answers of different partitions to one client take turns: the first of them moves on with every answer.
@@ -50,7 +51,8 @@ bool MemoryHub::pass_responses() {
 void MemoryHub::grant(std::uint32_t partition, const ClientSet& clients) {
     const std::uint32_t client = clients.next(next_client_[partition]);
     MemoryRequest request = clients_[client]->requests_in.receive();
-    CHECK_MSG(request.address % interleave_ + request.bytes <= interleave_, "a request crosses an interleave block");
+    CHECK_MSG(interleave_.remainder(request.address) + request.bytes <= interleave_.number(),
+              "a request crosses an interleave block");
     if (!request.write) {
         const std::uint32_t slot = free_reads_.back();
         free_reads_.pop_back();

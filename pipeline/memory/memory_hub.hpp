@@ -6,6 +6,7 @@
 // Not modelled: the width of the data wires; the DRAM bus behind them is narrower.
 #pragma once
 
+#include "pipeline/memory/divisor.hpp"
 #include "pipeline/memory/memory_params.hpp"
 #include "pipeline/memory/messages.hpp"
 #include "sim/channel.hpp"
@@ -97,7 +98,7 @@ class MemoryHub final : public sim::Component {
 
     Params params_;
     Stats stats_;
-    std::uint32_t interleave_;
+    Divisor interleave_, partition_count_;
     std::vector<std::unique_ptr<ClientPort>> clients_;
     std::vector<std::unique_ptr<PartitionPort>> partitions_;
     std::vector<std::uint32_t> next_client_; ///< per partition: first in turn

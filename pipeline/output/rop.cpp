@@ -179,6 +179,7 @@ bool Rop::execute(sim::Activity& waiting) {
     interlocked_ = false;
     queue_.pop();
     std::uint32_t cycles = 1;
+    const std::uint64_t failed_before = stats_.depth_failed.value + stats_.stencil_failed.value;
     switch (pass_->end) {
     case FragmentEnd::depth_colour:
         cycles = run_depth_colour(queued);
@@ -203,6 +204,7 @@ bool Rop::execute(sim::Activity& waiting) {
     DrawOutput& output = draw_outputs_[pass_->draw_of(queued.task.quad)];
     ++output.quads;
     output.fragments += fragments;
+    output.passed += fragments - (stats_.depth_failed.value + stats_.stencil_failed.value - failed_before);
     output.first_cycle = std::min(output.first_cycle, cycle());
     output.last_cycle = std::max(output.last_cycle, cycle());
     return true;

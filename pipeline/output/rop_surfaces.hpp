@@ -35,7 +35,9 @@ struct SurfaceStream {
 
 /// What one draw did to the output stage.
 struct DrawOutput {
-    std::uint64_t quads = 0, fragments = 0, hazards = 0;
+    std::uint64_t quads = 0, fragments = 0;
+    std::uint64_t passed = 0; ///< fragments that no test of the ROP killed
+    std::uint64_t hazards = 0;
     sim::Cycle first_cycle = ~sim::Cycle{0}, last_cycle = 0;
 };
 

@@ -17,6 +17,10 @@ bool is_doubtful(const RayHit& hit) {
     return std::min({hit.u, hit.v, 1.0 - hit.u - hit.v}) < doubtful_edge || hit.cosine < doubtful_cosine;
 }
 
+FrameSurface surface_of(const RayHit& hit, double distance, bool front, const HitShading::Shaded& shaded) {
+    return {distance, hit.draw, front, shaded.colour, shaded.normal, shaded.texcoords, shaded.tangent, shaded.lane};
+}
+
 } // namespace
 
 FrameSurfaces::FrameSurfaces(const pipeline::Frame& frame, const RayScene& scene, const PixelRays& rays, Hides hides)
@@ -52,7 +56,7 @@ void FrameSurfaces::find(std::span<const RayHit> hits, std::uint32_t x, std::uin
         surfaces.doubtful = surfaces.doubtful || is_doubtful(hit);
         const HitShading::Shaded shaded = shading_(hit, x, y);
         if (!shaded.alive) continue;
-        const FrameSurface surface{rays_.distance(hit.t), hit.draw, front, shaded.colour, shaded.normal};
+        const FrameSurface surface = surface_of(hit, rays_.distance(hit.t), front, shaded);
         if (role == Role::layer || (hides_ && !hides_(surface))) {
             surfaces.layers.push_back(surface);
             continue;
@@ -67,7 +71,7 @@ std::optional<FrameSurface> FrameSurfaces::along_ray(const RayHit& hit) const {
     if (roles_[hit.draw].role == Role::none || culled(hit, hit.front)) return std::nullopt;
     const HitShading::Shaded shaded = shading_(hit);
     if (!shaded.alive) return std::nullopt;
-    return FrameSurface{hit.t, hit.draw, hit.front, shaded.colour, shaded.normal};
+    return surface_of(hit, hit.t, hit.front, shaded);
 }
 
 } // namespace reports

@@ -20,6 +20,7 @@ std::vector<pipeline::Needs> needs_of_draws(const pipeline::Frame& frame) {
 pipeline::ShaderOptions shader_options(const pipeline::Frame& frame, const pipeline::Needs& needs) {
     return {.colours = needs.colours,
             .normals = needs.fragment_normals,
+            .map_texcoords = needs.map_texcoords,
             .fragment_colour = needs.fragment_colour,
             .perspective = frame.view.projection[2][3] != 0.0F,
             .textures = needs.textures,
@@ -56,7 +57,7 @@ HitShading::HitShading(const pipeline::Frame& frame, const RayScene& scene, cons
 pipeline::CornerWeights HitShading::weights(const RayHit& hit, std::uint32_t x, std::uint32_t y) const {
     constexpr double largest = 1e6;
     pipeline::CornerWeights weights = own_weights(hit);
-    if (!shaders_[hit.mesh].samples()) return weights;
+    if (!shaders_[hit.mesh].samples() && !shaders_[hit.mesh].gives_texcoords()) return weights;
     const auto corners = scene_.corners(hit.mesh, hit.triangle);
     for (std::uint32_t lane = 0; lane < 4; ++lane) {
         if (lane == lane_of(x, y)) continue;
@@ -84,7 +85,9 @@ HitShading::Shaded HitShading::shaded(const RayHit& hit, const pipeline::CornerW
     const auto output = shader.shade(triangle, weights, 1U << lane);
     const glm::dvec3 normal = to_world_ * glm::dvec3(output.normals[lane]);
     const double length = glm::length(normal);
-    return {output.colours[lane], length > 0.0 ? normal / length : glm::dvec3(0.0), output.alive != 0};
+    const glm::vec3 tangent(to_world_ * glm::dvec3(triangle.tangent));
+    return {output.colours[lane], length > 0.0 ? normal / length : glm::dvec3(0.0), output.alive != 0,
+            output.texcoords,     glm::vec4(tangent, triangle.tangent.w),           lane};
 }
 
 } // namespace reports

@@ -6,6 +6,7 @@
 #include "pipeline/functional/shader.hpp"
 #include "reports/truth/pixel_rays.hpp"
 
+#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <vector>
@@ -21,6 +22,9 @@ class HitShading {
         glm::vec4 colour{0.0F}; ///< linear RGBA; a cosine where the frame asks for it; 0 where it needs none
         glm::dvec3 normal{0.0}; ///< in the world, of unit length or 0; 0 where the frame needs none
         bool alive = true;      ///< not discarded by the alpha test
+        std::array<glm::vec4, 4> texcoords{}; ///< these three: see traces::FrameSurface
+        glm::vec4 tangent{0.0F};
+        std::uint32_t lane = 0;
     };
     Shaded operator()(const RayHit& hit, std::uint32_t x, std::uint32_t y) const;
     /// Of any ray, textures read in their finest level.

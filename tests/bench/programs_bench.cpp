@@ -1,8 +1,10 @@
-// Speed of modify programs, built in and interpreted: fragments per second into pixels of random depth order.
+// Speed of modify programs, built in, interpreted, and in GLSL: fragments per second into pixels of random depth order.
 #include "models/programs/language/user_program.hpp"
 #include "models/programs/nearest_k.hpp"
 #include "models/programs/order_and_blend.hpp"
 #include "sim/random.hpp"
+#include "traces/glsl.hpp"
+#include "traces/user_programs.hpp"
 
 #include <array>
 #include <benchmark/benchmark.h>
@@ -46,9 +48,18 @@ void program_order_and_blend_interpreted(benchmark::State& state) {
     run_program(state, *models::load_user_program("order_and_blend.kb", k_of(state)).program);
 }
 
+void run_glsl_program(benchmark::State& state, const char* file) {
+    if (!traces::can_compile_glsl()) return state.SkipWithError("built without glslang");
+    run_program(state, *traces::chosen_program(file, {"", k_of(state), 0.5F}).program);
+}
+void program_nearest_k_glsl(benchmark::State& state) { run_glsl_program(state, "nearest_k.glsl"); }
+void program_order_and_blend_glsl(benchmark::State& state) { run_glsl_program(state, "order_and_blend.glsl"); }
+
 BENCHMARK(program_nearest_k)->ArgName("k")->Arg(4)->Arg(16);
 BENCHMARK(program_nearest_k_interpreted)->ArgName("k")->Arg(4)->Arg(16);
+BENCHMARK(program_nearest_k_glsl)->ArgName("k")->Arg(4)->Arg(16);
 BENCHMARK(program_order_and_blend)->ArgName("k")->Arg(4)->Arg(16);
 BENCHMARK(program_order_and_blend_interpreted)->ArgName("k")->Arg(4)->Arg(16);
+BENCHMARK(program_order_and_blend_glsl)->ArgName("k")->Arg(4)->Arg(16);
 
 } // namespace

@@ -16,7 +16,7 @@ SurfaceInfo blocks() {
         levels.emplace_back(along * along * 16);
         for (std::size_t i = 0; i < levels.back().size(); ++i) levels.back()[i] = static_cast<std::byte>(i * 37);
     }
-    info.contents = make_contents(info, levels);
+    info.contents = make_contents(info, {levels.begin(), levels.end()});
     return info;
 }
 

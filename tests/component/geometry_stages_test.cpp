@@ -182,10 +182,14 @@ struct ShaderRun {
     VertexShaderStats stats;
 };
 
-ShaderRun shade(std::uint32_t count, const VertexShaderParams& params, tests::SinkOptions sink_options = {}) {
+/// @param instructions of each vertex; 0: of none that counts them
+ShaderRun shade(std::uint32_t count, const VertexShaderParams& params, tests::SinkOptions sink_options = {},
+                std::uint32_t instructions = 0) {
     Rig rig;
     VertexShader shader(rig.context("shader"), params);
-    Source<VertexTask> source(rig.context("source"), vertices(count));
+    std::vector<VertexTask> tasks = vertices(count);
+    for (VertexTask& task : tasks) task.instructions = instructions;
+    Source<VertexTask> source(rig.context("source"), tasks);
     Sink<VertexTask> sink(rig.context("sink"), std::move(sink_options));
     sim::connect(source.out, shader.vertices_in, {.width = params.vertices_per_clk()});
     sim::connect(shader.vertices_out, sink.in, {.width = params.vertices_per_clk()});
@@ -209,6 +213,20 @@ TEST(VertexShaderStage, ThroughputIsUnitsOverTime) {
         const ShaderRun run = shade(1200, {.units = test.units, .cycles_per_vertex = test.time});
         EXPECT_EQ(run.cycles.back() - run.cycles.front(), test.cycles) << test.units << " units";
         EXPECT_EQ(run.stats.unit_cycles.value, 1200U * test.time);
+    }
+}
+
+TEST(VertexShaderStage, ProgramsTakeAQuarterOfAVertexForEachInstruction) {
+    for (const std::uint32_t instructions : {1U, 3U, 4U, 5U, 40U, 400U})
+        for (const std::uint32_t time : {4U, 8U})
+            EXPECT_EQ(shade(1, {.units = 8, .cycles_per_vertex = time}, {}, instructions).cycles,
+                      Cycles{1 + instructions * time / 4 + 1});
+    // What is left of a cycle counts as one.
+    EXPECT_EQ(shade(1, {.units = 8, .cycles_per_vertex = 1}, {}, 5).cycles, Cycles{1 + 2 + 1});
+    for (const std::uint32_t instructions : {10U, 20U}) {
+        const ShaderRun run = shade(1200, {.units = 1, .cycles_per_vertex = 4}, {}, instructions);
+        EXPECT_EQ(run.cycles.back() - run.cycles.front(), 1199U * instructions);
+        EXPECT_EQ(run.stats.unit_cycles.value, 1200U * instructions);
     }
 }
 

@@ -1,9 +1,7 @@
 // Crossbar and partitions together: routing, latency, bandwidth, fairness, conservation.
-#include "pipeline/memory/memory_system.hpp"
-#include "tests/support/sim_kit.hpp"
+#include "tests/support/memory_kit.hpp"
 
 #include <algorithm>
-#include <memory>
 #include <nlohmann/json.hpp>
 
 namespace memory_system_test {
@@ -14,110 +12,10 @@ using pipeline::MemoryRequest;
 using pipeline::MemoryResponse;
 using pipeline::MemorySystem;
 using sim::Cycle;
-using tests::Rig;
-
-// At 1 GHz: 8 bytes per cycle and partition.
-MemoryParams small_memory() {
-    MemoryParams params;
-    params.partitions = 4;
-    params.bandwidth = 32;
-    params.hub.latency = 5;
-    params.controller.request_latency = 40;
-    params.controller.return_latency = 60;
-    params.controller.dram = {.rcd_read_ns = 12,
-                              .rcd_write_ns = 12,
-                              .cl_ns = 8,
-                              .wl_ns = 8,
-                              .rp_ns = 12,
-                              .ras_ns = 0,
-                              .wr_ns = 0,
-                              .rrd_ns = 0,
-                              .faw_ns = 0,
-                              .rtw_ns = 0,
-                              .wtr_ns = 0,
-                              .refi_ns = 0,
-                              .row_bytes = 2048,
-                              .banks = 8};
-    return params;
-}
-
-std::vector<MemoryRequest> reads(std::uint32_t count, std::uint64_t address, std::uint64_t step,
-                                 std::uint32_t bytes = 64) {
-    std::vector<MemoryRequest> requests;
-    for (std::uint32_t i = 0; i < count; ++i)
-        requests.push_back({address + i * step, bytes, 1000 + i, i % 3, MemoryClient::vertex, false});
-    return requests;
-}
-
-/// Sends requests, in order, to the memory partitions that hold their addresses, and notes every answer.
-class RopClient final : public sim::Component {
-  public:
-    std::vector<sim::Out<MemoryRequest>> out;
-    std::vector<sim::In<MemoryResponse>> in;
-    struct Arrival {
-        MemoryResponse response;
-        Cycle cycle;
-    };
-    std::vector<Arrival> arrivals;
-
-    RopClient(sim::Context context, const MemorySystem& memory, std::vector<MemoryRequest> requests)
-        : Component(std::move(context)), memory_(memory), requests_(std::move(requests)) {
-        for (const MemoryRequest& request : requests_) answers_ += !request.write || request.notify ? 1 : 0;
-        for (std::uint32_t i = 0; i < memory.partitions(); ++i) {
-            out.emplace_back(*this, "out");
-            in.emplace_back(*this, "in");
-        }
-    }
-
-  private:
-    sim::Activity tick() override {
-        bool progress = false;
-        for (auto& port : in)
-            for (; port.peek() != nullptr; progress = true) arrivals.push_back({port.receive(), cycle()});
-        for (; sent_ < requests_.size(); ++sent_, progress = true) {
-            auto& port = out[memory_.partition_of(requests_[sent_].address)];
-            if (!port.ready()) break;
-            port.send(requests_[sent_]);
-        }
-        if (progress) return sim::Activity::busy;
-        if (sent_ < requests_.size()) return sim::Activity::blocked;
-        return arrivals.size() < answers_ ? sim::Activity::memory : sim::Activity::starved;
-    }
-
-    const MemorySystem& memory_;
-    std::vector<MemoryRequest> requests_;
-    std::size_t sent_ = 0, answers_ = 0;
-};
-
-class Bench {
-  public:
-    explicit Bench(const MemoryParams& params, sim::Mode mode = sim::Mode::normal, std::uint64_t shuffle = 1)
-        : rig(mode, 1, shuffle), memory(rig.simulation, rig.clock, params) {}
-
-    void add(std::vector<MemoryRequest> requests, tests::SinkOptions sink = {}) {
-        const std::string number = std::to_string(sources.size());
-        sources.push_back(std::make_unique<tests::Source<MemoryRequest>>(rig.context("source" + number), requests));
-        sinks.push_back(std::make_unique<tests::Sink<MemoryResponse>>(rig.context("sink" + number), sink));
-        memory.attach(sources.back()->out, sinks.back()->in);
-    }
-    RopClient& add_rop(std::vector<MemoryRequest> requests) {
-        const auto number = static_cast<std::uint32_t>(rops.size());
-        rops.push_back(std::make_unique<RopClient>(rig.context("rop" + std::to_string(number)), memory, requests));
-        memory.attach_rop(number, rops.back()->out, rops.back()->in);
-        return *rops.back();
-    }
-    std::vector<std::uint32_t> tags(std::size_t client) const {
-        std::vector<std::uint32_t> list;
-        for (const MemoryResponse& response : sinks[client]->values()) list.push_back(response.tag);
-        return list;
-    }
-
-    Rig rig;
-    MemorySystem memory;
-    std::vector<std::unique_ptr<tests::Source<MemoryRequest>>> sources;
-    std::vector<std::unique_ptr<tests::Sink<MemoryResponse>>> sinks;
-    std::vector<std::unique_ptr<RopClient>> rops;
-};
+using Bench = tests::MemoryBench;
+using RopClient = tests::MemoryRopClient;
+using tests::reads;
+using tests::small_memory;
 
 TEST(MemorySystem, UnloadedReadTakesExactlyWhatIsStated) {
     for (const std::uint32_t bytes : {4U, 32U, 64U, 256U}) {
@@ -178,93 +76,6 @@ TEST(MemorySystem, HalfOfTheDefaultRoundTripLiesBehindTheArray) {
     simulation.run();
     EXPECT_EQ(rop.arrivals[0].response.delay, 129U);
     EXPECT_EQ(rop.arrivals[0].cycle + 129 + 2 * 20, 300U); // the crossbar's wires, each way, are not on its way
-}
-
-// Cycles of a lone read, less those on the chip, in nanoseconds.
-double dram_ns(double core_mhz) {
-    sim::Simulation simulation;
-    const sim::Clock& clock = simulation.add_clock("core", core_mhz);
-    const MemoryParams params;
-    MemorySystem memory(simulation, clock, params);
-    tests::Source<MemoryRequest> source(simulation.context("source", clock), reads(1, 0, 0));
-    tests::Sink<MemoryResponse> sink(simulation.context("sink", clock));
-    memory.attach(source.out, sink.in);
-    simulation.run();
-    const Cycle chip =
-        params.controller.request_latency + params.controller.return_latency + 2 * params.hub.latency + 2;
-    return static_cast<double>((sink.cycles().front() - chip) * clock.period) / 1000;
-}
-
-TEST(MemorySystem, PHY_S1_TimeOfTheDramDoesNotChangeWithTheCoreClock) {
-    const double device = 15 + 13.75 + 5; // tRCD, CL, two bursts
-    for (const double mhz : {325.0, 650.0, 1300.0, 2600.0}) {
-        EXPECT_GE(dram_ns(mhz), device) << mhz;
-        EXPECT_LE(dram_ns(mhz), device + 1e3 / mhz) << mhz; // up to the next edge
-    }
-}
-
-TEST(MemorySystem, PHY_S1_BandwidthDoesNotChangeWithTheCoreClock) {
-    std::vector<double> ns;
-    for (const double mhz : {650.0, 1300.0}) {
-        sim::Simulation simulation;
-        const sim::Clock& clock = simulation.add_clock("core", mhz);
-        MemoryParams params;
-        params.bandwidth = 12.8;
-        MemorySystem memory(simulation, clock, params);
-        tests::Source<MemoryRequest> source(simulation.context("source", clock), reads(20000, 0, 64));
-        tests::Sink<MemoryResponse> sink(simulation.context("sink", clock));
-        memory.attach(source.out, sink.in);
-        simulation.run();
-        ns.push_back(static_cast<double>(simulation.now()));
-    }
-    EXPECT_NEAR(ns[1] / ns[0], 1, 0.01);
-}
-
-// ROP partitions that exchange tiles, as many bytes read as written.
-TEST(MemorySystem, PHY_P10a_RopPartitionsReachSeventyToNinetyTwoPercentOfThePeak) {
-    for (const std::uint32_t bytes : {32U, 64U, 256U}) {
-        const MemoryParams params;
-        Bench bench(params);
-        constexpr std::uint32_t total = 1U << 20U; // of each ROP partition, in either direction
-        for (std::uint64_t rop = 0; rop < 4; ++rop) {
-            std::vector<MemoryRequest> requests;
-            for (std::uint32_t i = 0; i < 2 * total / bytes; ++i) {
-                const bool write = i / (256 / bytes) % 2 == 1; // a block of 256 bytes each way in turn
-                const std::uint64_t at = std::uint64_t{i / (512 / bytes)} * 256 + i % (256 / bytes) * bytes;
-                requests.push_back({(rop << 26U) + (write ? 1U << 24U : 0U) + at, bytes, i, 0,
-                                    write ? MemoryClient::tile_write : MemoryClient::tile_read, write});
-            }
-            bench.add_rop(std::move(requests));
-        }
-        bench.rig.simulation.run();
-        const double ns = static_cast<double>(bench.rig.simulation.now()) / 1000;
-        const double share = 8.0 * total / ns / params.bandwidth;
-        EXPECT_GE(share, 0.70) << bytes;
-        EXPECT_LE(share, 0.92) << bytes;
-    }
-}
-
-// What lies in a row are its own bytes: a stream opens each row once, however many partitions it is spread over.
-TEST(MemorySystem, PHY_C5_RowHitsOfAStreamDoNotDependOnThePartitions) {
-    for (const std::uint32_t partitions : {1U, 4U, 16U, 64U}) {
-        for (const bool from_rop : {false, true}) {
-            MemoryParams params;
-            params.partitions = partitions;
-            params.bandwidth = 12.8 * partitions;
-            params.controller.dram.refi_ns = 0; // a refresh closes rows
-            Bench bench(params);
-            const std::uint32_t rows = 3 * partitions;
-            const std::uint32_t row_bytes = params.controller.dram.row_bytes;
-            if (from_rop)
-                bench.add_rop(reads(rows * row_bytes / 64, 0, 64));
-            else
-                bench.add(reads(rows * row_bytes / 64, 0, 64));
-            bench.rig.simulation.run();
-            const auto stats = bench.memory.controller_stats();
-            EXPECT_EQ(stats.row_misses.value, rows) << partitions;
-            EXPECT_EQ(stats.row_hits.value, rows * (row_bytes / 64 - 1)) << partitions;
-        }
-    }
 }
 
 TEST(MemorySystem, BurstLargerThanAnInterleaveBlockIsRefused) {

@@ -1,4 +1,4 @@
-// What is recorded of apitrace files, beside what Mesa counted when it drew them (record_oracle.sh).
+// What is recorded of apitrace files, beside what Mesa counted when it drew them.
 #include "sim/check.hpp"
 #include "tests/support/paths.hpp"
 #include "traces/glsl.hpp"

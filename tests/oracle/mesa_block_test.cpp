@@ -33,10 +33,10 @@ MesaTexture random_blocks(SurfaceFormat format, std::uint32_t size) {
     MesaTexture texture;
     texture.surface.format = format;
     texture.surface.width = texture.surface.height = size;
-    std::vector<std::byte>& bytes = texture.surface.levels[0];
-    bytes.resize(std::size_t{size / 4} * (size / 4) * pipeline::block_bytes_of(format));
+    std::vector<std::byte> bytes(std::size_t{size / 4} * (size / 4) * pipeline::block_bytes_of(format));
     for (std::uint32_t i = 0; i < bytes.size(); ++i)
         bytes[i] = static_cast<std::byte>(256.0F * tests::random_of("block", i));
+    texture.surface.levels[0] = std::move(bytes);
     texture.sampler.min_filter = texture.sampler.mag_filter = pipeline::Filter::nearest;
     return texture;
 }

@@ -1,17 +1,15 @@
 #include "tests/support/mesa_fixed_function.hpp"
 
+#include "tests/oracle/mesa_context.hpp"
 #include "tests/oracle/mesa_fixed_function_state.hpp"
 
 #if ROPSIM_HAVE_EGL
 
 #define GL_GLEXT_PROTOTYPES
-#include <EGL/egl.h>
-#include <EGL/eglext.h>
 #include <GL/gl.h>
 #include <GL/glext.h>
 
 #include <array>
-#include <cstdlib>
 #include <cstring>
 #include <fmt/format.h>
 #include <glm/gtc/type_ptr.hpp>
@@ -83,36 +81,11 @@ class Textures {
     std::vector<GLuint> names_;
 };
 
-GLuint shader_of(GLenum kind, const std::string& source) {
-    const GLuint shader = glCreateShader(kind);
-    const char* text = source.c_str();
-    glShaderSource(shader, 1, &text, nullptr);
-    glCompileShader(shader);
-    GLint good = 0;
-    glGetShaderiv(shader, GL_COMPILE_STATUS, &good);
-    if (good != 0) return shader;
-    std::array<char, 1000> log{};
-    glGetShaderInfoLog(shader, static_cast<GLsizei>(log.size()), nullptr, log.data());
-    throw std::runtime_error(fmt::format("llvmpipe: {}\n{}", log.data(), source));
-}
-
 /// Linked, with inputs at the places that they have in `from.inputs`.
 GLuint program_of(const FixedFunctionProgram& from) {
-    const GLuint program = glCreateProgram();
-    const GLuint vertex = shader_of(GL_VERTEX_SHADER, from.vertex);
-    const GLuint fragment = shader_of(GL_FRAGMENT_SHADER, from.fragment);
-    for (const GLuint shader : {vertex, fragment}) {
-        glAttachShader(program, shader);
-        glDeleteShader(shader);
-    }
-    for (GLuint i = 0; i < from.inputs.size(); ++i) glBindAttribLocation(program, i, from.inputs[i].variable.c_str());
-    glLinkProgram(program);
-    GLint good = 0;
-    glGetProgramiv(program, GL_LINK_STATUS, &good);
-    if (good != 0) return program;
-    std::array<char, 1000> log{};
-    glGetProgramInfoLog(program, static_cast<GLsizei>(log.size()), nullptr, log.data());
-    throw std::runtime_error(fmt::format("llvmpipe: {}\n{}\n{}", log.data(), from.vertex, from.fragment));
+    std::vector<std::string> inputs;
+    for (const auto& input : from.inputs) inputs.push_back(input.variable);
+    return link_program(from.vertex, from.fragment, inputs);
 }
 
 const std::vector<std::uint32_t>* words_of(const FixedFunctionProgram& program, const std::string& name) {
@@ -186,8 +159,8 @@ void set_arrays(const FixedFunctionMesh& mesh) {
 
 class LlvmpipeFixedFunction : public MesaFixedFunction {
   public:
-    LlvmpipeFixedFunction(EGLDisplay display, EGLContext context) : display_(display), context_(context) {
-        const Current current(*this);
+    explicit LlvmpipeFixedFunction(const MesaContext& context) : context_(context) {
+        const Current current(context_);
         glGenFramebuffers(1, &framebuffer_);
         glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
         glGenRenderbuffers(1, &colour_);
@@ -197,7 +170,7 @@ class LlvmpipeFixedFunction : public MesaFixedFunction {
     }
 
     std::vector<glm::u8vec4> draw(const FixedFunctionState& state, const FixedFunctionMesh& mesh) override {
-        const Current current(*this);
+        const Current current(context_);
         const Textures textures(state);
         set_fixed_function(state);
         set_arrays(mesh);
@@ -206,7 +179,7 @@ class LlvmpipeFixedFunction : public MesaFixedFunction {
 
     std::vector<glm::u8vec4> draw(const FixedFunctionState& state, const FixedFunctionProgram& program,
                                   const FixedFunctionMesh& mesh) override {
-        const Current current(*this);
+        const Current current(context_);
         const Textures textures(state);
         set_around_shaders(state);
         if (program.sizes_points) glEnable(GL_PROGRAM_POINT_SIZE);
@@ -228,24 +201,19 @@ class LlvmpipeFixedFunction : public MesaFixedFunction {
     /// The context, with all of its state as it was afterwards; and then the one that was current.
     class Current {
       public:
-        explicit Current(const LlvmpipeFixedFunction& of)
-            : display_(eglGetCurrentDisplay()), context_(eglGetCurrentContext()), own_(of.display_) {
-            eglMakeCurrent(own_, EGL_NO_SURFACE, EGL_NO_SURFACE, of.context_);
+        explicit Current(const MesaContext& context) : current_(context) {
             glPushAttrib(GL_ALL_ATTRIB_BITS);
             glPushClientAttrib(GL_CLIENT_ALL_ATTRIB_BITS);
         }
         ~Current() {
             glPopClientAttrib();
             glPopAttrib();
-            eglMakeCurrent(display_ != EGL_NO_DISPLAY ? display_ : own_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_);
         }
         Current(const Current&) = delete;
         Current& operator=(const Current&) = delete;
 
       private:
-        EGLDisplay display_;
-        EGLContext context_;
-        EGLDisplay own_;
+        CurrentMesaContext current_;
     };
 
     std::vector<glm::u8vec4> picture(const FixedFunctionState& state, const FixedFunctionMesh& mesh) const {
@@ -266,34 +234,15 @@ class LlvmpipeFixedFunction : public MesaFixedFunction {
         return pixels;
     }
 
-    EGLDisplay display_;
-    EGLContext context_;
+    MesaContext context_;
     GLuint framebuffer_ = 0, colour_ = 0;
 };
 
 } // namespace
 
 std::unique_ptr<MesaFixedFunction> MesaFixedFunction::create(std::string& reason) {
-    setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
-    setenv("GALLIUM_DRIVER", "llvmpipe", 1);
-    const auto get_display =
-        reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(eglGetProcAddress("eglGetPlatformDisplayEXT"));
-    const EGLDisplay display = get_display == nullptr
-                                   ? EGL_NO_DISPLAY
-                                   : get_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
-    if (display == EGL_NO_DISPLAY || eglInitialize(display, nullptr, nullptr) == EGL_FALSE) {
-        reason = "EGL finds no surfaceless Mesa display";
-        return nullptr;
-    }
-    eglBindAPI(EGL_OPENGL_API);
-    constexpr std::array<EGLint, 3> attributes{EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                                               EGL_CONTEXT_OPENGL_COMPATIBILITY_PROFILE_BIT, EGL_NONE};
-    const EGLContext context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes.data());
-    if (context == EGL_NO_CONTEXT) {
-        reason = "EGL gives no OpenGL context of the compatibility profile";
-        return nullptr;
-    }
-    return std::make_unique<LlvmpipeFixedFunction>(display, context);
+    const auto context = create_mesa_context(MesaProfile::compatibility, reason);
+    return context ? std::make_unique<LlvmpipeFixedFunction>(*context) : nullptr;
 }
 
 } // namespace tests

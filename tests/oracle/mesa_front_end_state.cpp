@@ -91,6 +91,23 @@ TEST_F(MesaFrontEndState, DepthClampKeepsTheSamePixels) {
     }
 }
 
+TEST_F(MesaFrontEndState, DepthRangesGiveTheSameDepths) {
+    for (std::uint64_t seed = 0; seed < 12; ++seed) {
+        TriangleScene scene = random_soup(1, 200.0, 300 + seed);
+        scene.state.depth.range_near = static_cast<float>(seed % 4) / 4.0F;
+        scene.state.depth.range_far = static_cast<float>(seed % 3) / 2.0F;
+        scene.state.depth.clamp = seed >= 6;
+        if (scene.state.depth.clamp)
+            for (std::size_t i = 0; i < 3; ++i) scene.positions[i].z = scene.positions[i].z * 6.0F - 3.0F;
+        const OwnPicture own = count_fragments(rasterize_scene(scene));
+        const MesaPicture mesa = renderer_->render(scene, MesaMode::nearest);
+        for (std::size_t i = 0; i < own.count.size(); ++i)
+            if (own.count[i] != 0 && mesa.id[i] != 0) {
+                ASSERT_NEAR(own.depth[i], mesa.depth[i], 3e-5F) << seed;
+            }
+    }
+}
+
 TEST_F(MesaFrontEndState, BiasMovesDepthsAlike) {
     double largest = 0;
     for (std::uint64_t seed = 0; seed < 12; ++seed) {

@@ -1,14 +1,14 @@
 #include "tests/support/mesa_renderer.hpp"
 
+#include "tests/oracle/mesa_context.hpp"
+
 #if ROPSIM_HAVE_EGL
 
 #define GL_GLEXT_PROTOTYPES
 #include <EGL/egl.h>
-#include <EGL/eglext.h>
 #include <GL/glcorearb.h>
 
 #include <array>
-#include <cstdlib>
 #include <stdexcept>
 
 namespace tests {
@@ -45,49 +45,6 @@ void main() {
     id = uint(gl_PrimitiveID) + 1u;
 }
 )";
-
-GLuint compile(GLenum kind, const char* source) {
-    const GLuint shader = glCreateShader(kind);
-    glShaderSource(shader, 1, &source, nullptr);
-    glCompileShader(shader);
-    GLint good = 0;
-    glGetShaderiv(shader, GL_COMPILE_STATUS, &good);
-    if (good == 0) throw std::runtime_error("the shader of the OpenGL reference does not compile");
-    return shader;
-}
-
-GLuint link_program() {
-    const GLuint program = glCreateProgram();
-    glAttachShader(program, compile(GL_VERTEX_SHADER, vertex_source));
-    glAttachShader(program, compile(GL_FRAGMENT_SHADER, fragment_source));
-    glLinkProgram(program);
-    GLint good = 0;
-    glGetProgramiv(program, GL_LINK_STATUS, &good);
-    if (good == 0) throw std::runtime_error("the shaders of the OpenGL reference do not link");
-    return program;
-}
-
-/// A display without any window system, on the software rasterizer.
-EGLDisplay open_display() {
-    setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
-    setenv("GALLIUM_DRIVER", "llvmpipe", 1);
-    const auto get_display =
-        reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(eglGetProcAddress("eglGetPlatformDisplayEXT"));
-    if (get_display == nullptr) return EGL_NO_DISPLAY;
-    const EGLDisplay display = get_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
-    if (display == EGL_NO_DISPLAY || eglInitialize(display, nullptr, nullptr) == EGL_FALSE) return EGL_NO_DISPLAY;
-    return display;
-}
-
-EGLContext open_context(EGLDisplay display) {
-    constexpr std::array<EGLint, 7> attributes{
-        EGL_CONTEXT_MAJOR_VERSION,           4,       EGL_CONTEXT_MINOR_VERSION, 5, EGL_CONTEXT_OPENGL_PROFILE_MASK,
-        EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
-    if (eglBindAPI(EGL_OPENGL_API) == EGL_FALSE) return EGL_NO_CONTEXT;
-    const EGLContext context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes.data());
-    if (context == EGL_NO_CONTEXT) return context;
-    return eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context) == EGL_TRUE ? context : EGL_NO_CONTEXT;
-}
 
 /// Colour, R32UI and depth targets of one size; with D24S8 the stencil is attached, too.
 class Targets {
@@ -198,7 +155,7 @@ void upload(GLenum target, GLuint buffer, const std::vector<Element>& elements) 
 
 class LlvmpipeRenderer : public MesaRenderer {
   public:
-    LlvmpipeRenderer() : program_(link_program()) {
+    LlvmpipeRenderer() : program_(link_program(vertex_source, fragment_source, {})) {
         glGenVertexArrays(1, &vertex_array_);
         glGenBuffers(3, buffers_.data());
         glGenTextures(1, &colours_);
@@ -292,6 +249,7 @@ class LlvmpipeRenderer : public MesaRenderer {
             glFrontFace(state.front_is_clockwise ? GL_CCW : GL_CW);
         }
         set(GL_DEPTH_CLAMP, state.depth.clamp);
+        glDepthRange(static_cast<GLdouble>(state.depth.range_near), static_cast<GLdouble>(state.depth.range_far));
         set(GL_POLYGON_OFFSET_FILL, true);
         glPolygonOffset(state.depth.bias_slope, state.depth.bias_constant);
         glProvokingVertex(state.provoking == pipeline::ProvokingVertex::first ? GL_FIRST_VERTEX_CONVENTION
@@ -357,13 +315,10 @@ class LlvmpipeRenderer : public MesaRenderer {
 } // namespace
 
 std::unique_ptr<MesaRenderer> MesaRenderer::create(std::string& reason) {
-    const EGLDisplay display = open_display();
-    if (display == EGL_NO_DISPLAY) {
-        reason = "EGL finds no surfaceless Mesa display";
-        return nullptr;
-    }
-    if (open_context(display) == EGL_NO_CONTEXT) {
-        reason = "EGL gives no OpenGL 4.5 core context without a surface";
+    const auto context = create_mesa_context(MesaProfile::core, reason);
+    if (!context) return nullptr;
+    if (eglMakeCurrent(context->display, EGL_NO_SURFACE, EGL_NO_SURFACE, context->context) == EGL_FALSE) {
+        reason = "EGL needs a surface";
         return nullptr;
     }
     auto renderer = std::make_unique<LlvmpipeRenderer>();

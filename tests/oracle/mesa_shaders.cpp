@@ -1,16 +1,14 @@
 #include "tests/support/mesa_shaders.hpp"
 
+#include "tests/oracle/mesa_context.hpp"
 #include "tests/oracle/mesa_texture_upload.hpp"
 #include "tests/support/oracle_textures.hpp"
 
 #if ROPSIM_HAVE_EGL
 
 #define GL_GLEXT_PROTOTYPES
-#include <EGL/egl.h>
-#include <EGL/eglext.h>
 #include <GL/glcorearb.h>
 
-#include <cstdlib>
 #include <fmt/format.h>
 #include <stdexcept>
 
@@ -20,38 +18,6 @@ namespace {
 
 // Of the compatibility profile.
 constexpr GLenum clamp_vertex_color = 0x891A, clamp_fragment_color = 0x891B;
-
-/// Makes a context current, and after that the one that was.
-class CurrentContext {
-  public:
-    CurrentContext(EGLDisplay display, EGLContext context)
-        : display_(eglGetCurrentDisplay()), context_(eglGetCurrentContext()), own_(display) {
-        eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context);
-    }
-    ~CurrentContext() {
-        eglMakeCurrent(display_ != EGL_NO_DISPLAY ? display_ : own_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_);
-    }
-    CurrentContext(const CurrentContext&) = delete;
-    CurrentContext& operator=(const CurrentContext&) = delete;
-
-  private:
-    EGLDisplay display_;
-    EGLContext context_;
-    EGLDisplay own_;
-};
-
-GLuint compiled(GLenum kind, const std::string& source) {
-    const GLuint shader = glCreateShader(kind);
-    const char* text = source.c_str();
-    glShaderSource(shader, 1, &text, nullptr);
-    glCompileShader(shader);
-    GLint good = 0;
-    glGetShaderiv(shader, GL_COMPILE_STATUS, &good);
-    if (good != 0) return shader;
-    std::array<char, 1000> log{};
-    glGetShaderInfoLog(shader, static_cast<GLsizei>(log.size()), nullptr, log.data());
-    throw std::runtime_error(fmt::format("llvmpipe: {}\n{}", log.data(), source));
-}
 
 std::string linear_vertex_source(const std::string& version, const std::vector<LinearInput>& inputs) {
     const bool modern = version.find("#version") != std::string::npos && version.find("110") == std::string::npos &&
@@ -125,8 +91,8 @@ constexpr std::array<SamplerType, 10> samplers{{{GL_SAMPLER_1D, GL_TEXTURE_1D},
 
 class LlvmpipeShaders : public MesaShaders {
   public:
-    LlvmpipeShaders(EGLDisplay display, EGLContext context) : display_(display), context_(context) {
-        const CurrentContext current(display_, context_);
+    explicit LlvmpipeShaders(const MesaContext& context) : context_(context) {
+        const CurrentMesaContext current(context_);
         constexpr std::array<float, 6> corners{-1, -1, 3, -1, -1, 3};
         glGenBuffers(1, &corners_);
         glBindBuffer(GL_ARRAY_BUFFER, corners_);
@@ -151,21 +117,8 @@ class LlvmpipeShaders : public MesaShaders {
                        const std::function<float(const ActiveUniform&, std::uint32_t)>& value,
                        const std::function<float(const ActiveBlock&, std::uint32_t)>& block,
                        const std::function<std::uint32_t(const ActiveUniform&)>& unit) override {
-        const CurrentContext current(display_, context_);
-        const GLuint program = glCreateProgram();
-        const GLuint vertex = compiled(GL_VERTEX_SHADER, linear_vertex_source(version, inputs));
-        const GLuint fragment = compiled(GL_FRAGMENT_SHADER, fragment_source);
-        glAttachShader(program, vertex);
-        glAttachShader(program, fragment);
-        glBindAttribLocation(program, 0, "corner");
-        glLinkProgram(program);
-        GLint good = 0;
-        glGetProgramiv(program, GL_LINK_STATUS, &good);
-        if (good == 0) {
-            std::array<char, 1000> log{};
-            glGetProgramInfoLog(program, static_cast<GLsizei>(log.size()), nullptr, log.data());
-            throw std::runtime_error(fmt::format("llvmpipe: {}", log.data()));
-        }
+        const CurrentMesaContext current(context_);
+        const GLuint program = link_program(linear_vertex_source(version, inputs), fragment_source, {"corner"});
         glUseProgram(program);
         std::vector<GLuint> textures, buffers;
         set_uniforms(program, value, unit, textures, buffers);
@@ -173,8 +126,6 @@ class LlvmpipeShaders : public MesaShaders {
         ShaderPicture picture = render();
         glUseProgram(0);
         glDeleteProgram(program);
-        glDeleteShader(vertex);
-        glDeleteShader(fragment);
         glDeleteTextures(static_cast<GLsizei>(textures.size()), textures.data());
         glDeleteBuffers(static_cast<GLsizei>(buffers.size()), buffers.data());
         if (glGetError() != GL_NO_ERROR) throw std::runtime_error("the OpenGL reference reports an error");
@@ -184,7 +135,7 @@ class LlvmpipeShaders : public MesaShaders {
     void set_texture(const MesaTexture* texture) override { texture_ = texture; }
 
     std::vector<std::array<std::uint8_t, 4>> decoded(const MesaTexture& texture) override {
-        const CurrentContext current(display_, context_);
+        const CurrentMesaContext current(context_);
         const GLuint name = upload_texture(GL_TEXTURE_2D, texture);
         std::vector<std::array<std::uint8_t, 4>> texels(std::size_t{texture.surface.width} * texture.surface.height);
         glGetTexImage(GL_TEXTURE_2D, 0, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
@@ -345,8 +296,7 @@ class LlvmpipeShaders : public MesaShaders {
         }
     }
 
-    EGLDisplay display_;
-    EGLContext context_;
+    MesaContext context_;
     GLuint corners_ = 0, vertex_array_ = 0, framebuffer_ = 0, colour_ = 0;
     const MesaTexture* texture_ = nullptr;
 };
@@ -354,32 +304,9 @@ class LlvmpipeShaders : public MesaShaders {
 } // namespace
 
 std::unique_ptr<MesaShaders> MesaShaders::create(std::string& reason) {
-    setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
-    setenv("GALLIUM_DRIVER", "llvmpipe", 1);
-    const auto get_display =
-        reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(eglGetProcAddress("eglGetPlatformDisplayEXT"));
-    const EGLDisplay display = get_display == nullptr
-                                   ? EGL_NO_DISPLAY
-                                   : get_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
-    if (display == EGL_NO_DISPLAY || eglInitialize(display, nullptr, nullptr) == EGL_FALSE) {
-        reason = "EGL finds no surfaceless Mesa display";
-        return nullptr;
-    }
     // The compatibility profile: shaders of GLSL 1.10 and 4.50 in one context.
-    constexpr std::array<EGLint, 7> attributes{EGL_CONTEXT_MAJOR_VERSION,
-                                               4,
-                                               EGL_CONTEXT_MINOR_VERSION,
-                                               5,
-                                               EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                                               EGL_CONTEXT_OPENGL_COMPATIBILITY_PROFILE_BIT,
-                                               EGL_NONE};
-    eglBindAPI(EGL_OPENGL_API);
-    const EGLContext context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes.data());
-    if (context == EGL_NO_CONTEXT) {
-        reason = "EGL gives no OpenGL 4.5 context of the compatibility profile";
-        return nullptr;
-    }
-    return std::make_unique<LlvmpipeShaders>(display, context);
+    const auto context = create_mesa_context(MesaProfile::compatibility, reason);
+    return context ? std::make_unique<LlvmpipeShaders>(*context) : nullptr;
 }
 
 } // namespace tests

@@ -64,7 +64,7 @@ void upload_level(GLenum target, const traces::RecordedSurface& surface, std::ui
     const auto size = [level](std::uint32_t texels) { return static_cast<GLsizei>(std::max(1U, texels >> level)); };
     const auto number = static_cast<GLint>(level);
     const GLsizei width = size(surface.width), height = size(surface.height);
-    const std::vector<std::byte>& bytes = surface.levels[level];
+    const pipeline::SharedBytes& bytes = surface.levels[level];
     const auto internal = static_cast<GLint>(found->internal);
     if (target == GL_TEXTURE_3D || target == GL_TEXTURE_2D_ARRAY) {
         const GLsizei depth = target == GL_TEXTURE_3D ? size(surface.depth) : static_cast<GLsizei>(surface.depth);

@@ -2,6 +2,7 @@
 // exactly.
 #include "pipeline/geometry/geometry_front.hpp"
 #include "pipeline/memory/memory_system.hpp"
+#include "tests/oracle/mesa_context.hpp"
 #include "tests/support/mesa_renderer.hpp"
 #include "tests/support/oracle_meshes.hpp"
 
@@ -22,21 +23,11 @@ using tests::SceneDraw;
 
 #if ROPSIM_HAVE_EGL
 
-GLuint make_shader(GLenum kind, const char* source) {
-    const GLuint shader = glCreateShader(kind);
-    glShaderSource(shader, 1, &source, nullptr);
-    glCompileShader(shader);
-    return shader;
-}
-
 /// A program, a 4x4 target and vertices; needs a current OpenGL context.
 void set_up_opengl() {
-    const GLuint program = glCreateProgram();
-    glAttachShader(program, make_shader(GL_VERTEX_SHADER, "#version 450 core\nlayout(location=0) in vec3 p;"
-                                                          "void main() { gl_Position = vec4(p, 1.0); }"));
-    glAttachShader(program,
-                   make_shader(GL_FRAGMENT_SHADER, "#version 450 core\nout vec4 c; void main() { c = vec4(1); }"));
-    glLinkProgram(program);
+    const GLuint program = tests::link_program("#version 450 core\nlayout(location=0) in vec3 p;"
+                                               "void main() { gl_Position = vec4(p, 1.0); }",
+                                               "#version 450 core\nout vec4 c; void main() { c = vec4(1); }", {});
     glUseProgram(program);
     GLuint target = 0;
     GLuint framebuffer = 0;

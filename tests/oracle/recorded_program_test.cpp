@@ -2,6 +2,7 @@
 // tests/programs/draws_with_opengl.cpp, on Mesa's llvmpipe, without a window system.
 #include "sim/check.hpp"
 #include "tests/support/paths.hpp"
+#include "tests/support/program_run.hpp"
 #include "traces/glsl.hpp"
 #include "traces/recording/record_program.hpp"
 #include "traces/recording/recording_check.hpp"
@@ -316,6 +317,40 @@ TEST_F(RecordedPrograms, ProgramsWithoutFramesAreOneLine) {
               "no-such-program: expected a program that can be run: No such file or directory");
     EXPECT_NE(line_of({"sh", "-c", "kill -9 $$"}).find("the program ended by signal 9 (Killed) before"),
               std::string::npos);
+}
+
+// What a user sees of it; without an X server, which the program needs none of.
+TEST_F(RecordedPrograms, FramesThatDoNotComeAreSaid) {
+    const ropsim_test::TemporaryFolder folder;
+    ropsim_test::ProgramOptions options;
+    options.environment = {"DISPLAY=:none"};
+    const auto outcome =
+        ropsim_test::run_program({"record", "--frames", "0:5", "--json", "-o", (folder.path() / "x.rtrace").string(),
+                                  "--", program_.string(), "arrays", "elements"},
+                                 options);
+    if (outcome.error.find("with status 77") != std::string::npos) GTEST_SKIP() << outcome.error;
+    EXPECT_EQ(outcome.status, 0) << outcome.error;
+    EXPECT_NE(outcome.error.find("frames 0:5 were asked for; the program ended with status 0 behind frame 1"),
+              std::string::npos)
+        << outcome.error;
+}
+
+// The program would run on without an end, and ropsim wait for it.
+TEST_F(RecordedPrograms, NoRoomForWhatIsRecordedEndsTheProgram) {
+    const ropsim_test::TemporaryFolder folder;
+    ropsim_test::ProgramOptions options;
+    options.environment = {"DISPLAY=:none"};
+    options.file_limit = 1000;
+    const auto outcome =
+        ropsim_test::run_program({"record", "--frames", "0:1", "-o", (folder.path() / "x.rtrace").string(), "--",
+                                  program_.string(), "arrays", "elements", "texture"},
+                                 options);
+    if (outcome.error.find("with status 77") != std::string::npos) GTEST_SKIP() << outcome.error;
+    EXPECT_EQ(outcome.status, 1);
+    EXPECT_NE(outcome.error.find(": expected room for all that is recorded (TMPDIR names another folder)"),
+              std::string::npos)
+        << outcome.error;
+    EXPECT_EQ(folder.files(), std::vector<std::string>());
 }
 
 TEST_F(RecordedPrograms, InterruptedOnesEndWithTheProgram) {

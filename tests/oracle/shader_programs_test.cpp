@@ -5,7 +5,6 @@
 #include "sim/random.hpp"
 #include "sim/read_file.hpp"
 #include "tests/support/paths.hpp"
-#include "tests/support/replay.hpp"
 #include "tests/support/spirv_compiler.hpp"
 #include "traces/shader_programs/program.hpp"
 
@@ -50,68 +49,54 @@ std::vector<Pair> pairs(std::uint32_t k) {
             {models::make_order_and_blend(k, 0.3F), shipped("order_and_blend.glsl", k, 0.3F).program}};
 }
 
-TEST_F(ShaderPrograms, A6AndA7AreTheBuiltInPrograms) {
-    for (const std::uint32_t k : {1U, 2U, 4U, 16U})
-        for (const Pair& pair : pairs(k)) {
-            SCOPED_TRACE(fmt::format("{} k = {}", pair.built_in->id(), k));
-            EXPECT_EQ(pair.written->id(), pair.built_in->id());
-            EXPECT_EQ(pair.written->summary(), pair.built_in->summary());
-            EXPECT_EQ(pair.written->order_need(), pair.built_in->order_need());
-            EXPECT_EQ(pair.written->peeling(), pair.built_in->peeling());
-            EXPECT_EQ(pair.written->drains(), pair.built_in->drains());
-            EXPECT_EQ(pair.written->needs_colour(), pair.built_in->needs_colour());
-            EXPECT_EQ(pair.written->cleared_depth(), pair.built_in->cleared_depth());
-            sim::Random random(k, "fragments");
-            std::vector<float> a(pair.built_in->floats_per_pixel()), b(pair.written->floats_per_pixel());
-            ASSERT_EQ(a.size(), b.size());
-            for (int pixel = 0; pixel < 20; ++pixel) {
-                pair.built_in->clear(a.data());
-                pair.written->clear(b.data());
-                for (int i = 0; i < 30; ++i) {
-                    ASSERT_EQ(a, b);
-                    std::array<float, 4> rgba{};
-                    for (float& channel : rgba) channel = static_cast<float>(random.uniform());
-                    const float depth = static_cast<float>(random.below(24)) / 24.0F; // ties are frequent
-                    std::array<float, 4> entry_a{}, entry_b{};
-                    pair.built_in->make_entry({rgba.data(), depth, 0}, entry_a.data());
-                    pair.written->make_entry({rgba.data(), depth, 0}, entry_b.data());
-                    ASSERT_EQ(entry_a, entry_b);
-                    const std::vector<float> before = b;
-                    pair.built_in->insert(a.data(), entry_a.data());
-                    const bool changed = pair.written->insert(b.data(), entry_b.data());
-                    ASSERT_EQ(changed, b != before);
-                }
-                pair.built_in->drain(a.data());
-                pair.written->drain(b.data());
-                ASSERT_EQ(a, b);
-            }
+/// That both do the same with fragments by chance.
+void expect_alike(const Pair& pair, std::uint32_t k) {
+    SCOPED_TRACE(fmt::format("{} k = {}", pair.built_in->id(), k));
+    EXPECT_EQ(pair.written->id(), pair.built_in->id());
+    EXPECT_EQ(pair.written->summary(), pair.built_in->summary());
+    EXPECT_EQ(pair.written->order_need(), pair.built_in->order_need());
+    EXPECT_EQ(pair.written->peeling(), pair.built_in->peeling());
+    EXPECT_EQ(pair.written->drains(), pair.built_in->drains());
+    EXPECT_EQ(pair.written->needs_colour(), pair.built_in->needs_colour());
+    EXPECT_EQ(pair.written->cleared_depth(), pair.built_in->cleared_depth());
+    sim::Random random(k, "fragments");
+    std::vector<float> a(pair.built_in->floats_per_pixel()), b(pair.written->floats_per_pixel());
+    ASSERT_EQ(a.size(), b.size());
+    for (int pixel = 0; pixel < 20; ++pixel) {
+        pair.built_in->clear(a.data());
+        pair.written->clear(b.data());
+        for (int i = 0; i < 30; ++i) {
+            ASSERT_EQ(a, b);
+            std::array<float, 4> rgba{};
+            for (float& channel : rgba) channel = static_cast<float>(random.uniform());
+            const float depth = static_cast<float>(random.below(24)) / 24.0F; // ties are frequent
+            std::array<float, 4> entry_a{}, entry_b{};
+            pair.built_in->make_entry({rgba.data(), depth, 0}, entry_a.data());
+            pair.written->make_entry({rgba.data(), depth, 0}, entry_b.data());
+            ASSERT_EQ(entry_a, entry_b);
+            const std::vector<float> before = b;
+            pair.built_in->insert(a.data(), entry_a.data());
+            const bool changed = pair.written->insert(b.data(), entry_b.data());
+            ASSERT_EQ(changed, b != before);
         }
-}
-
-TEST_F(ShaderPrograms, GiveThePicturesOfTheBuiltInOnesInProtectedDesigns) {
-    for (const char* name : {"nearest-k", "order-and-blend"}) {
-        SCOPED_TRACE(name);
-        const support::Replay built_in(
-            "gen:discs?n=120&overlap=8&width=32&height=32",
-            {.width = 32, .height = 32, .knobs = {fmt::format("program={}", name), "k=3", "opacity=0.3"}});
-        support::Replay written = built_in;
-        written.frame.program =
-            shipped(name == std::string("nearest-k") ? "nearest_k.glsl" : "order_and_blend.glsl", 3, 0.3F).program;
-        written.reference = pipeline::run_reference(written.frame, written.streams, 1, 2);
-        EXPECT_FALSE(built_in.reference.picture.empty());
-        EXPECT_TRUE(written.reference.picture == built_in.reference.picture);
-        EXPECT_TRUE(written.reference.kbuffer == built_in.reference.kbuffer);
-        for (const char* design : {"scoreboard", "blender"}) {
-            const pipeline::RunResult run = written.run(design);
-            EXPECT_EQ(run.wrong_pixels, 0U) << design;
-            EXPECT_TRUE(run.kbuffer == built_in.run(design).kbuffer) << design;
-        }
+        pair.built_in->drain(a.data());
+        pair.written->drain(b.data());
+        ASSERT_EQ(a, b);
     }
 }
 
-/// The program that the README of traces shows.
+TEST_F(ShaderPrograms, LongA6AndA7AreTheBuiltInPrograms) {
+    for (const std::uint32_t k : {1U, 2U, 4U})
+        for (const Pair& pair : pairs(k)) expect_alike(pair, k);
+}
+
+TEST_F(ShaderPrograms, LongA6AndA7WithSixteenEntriesAreTheBuiltInPrograms) {
+    for (const Pair& pair : pairs(16)) expect_alike(pair, 16);
+}
+
+/// The program that the README of the programs shows.
 std::string readme_example() {
-    const std::string text = sim::read_file(ropsim_test::source_dir() / "traces/README.md", 1U << 20);
+    const std::string text = sim::read_file(ropsim_test::source_dir() / "models/programs/README.md", 1U << 20);
     const std::size_t begin = text.find("```\n#pragma program \"range\"");
     return begin == std::string::npos ? "" : text.substr(begin + 4, text.find("```", begin + 4) - begin - 4);
 }
@@ -152,7 +137,7 @@ std::string problem_of(const std::string& body) {
     return "";
 }
 
-TEST_F(ShaderPrograms, PriceGrowsWithWhatAFragmentNeeds) {
+TEST_F(ShaderPrograms, LongPriceGrowsWithWhatAFragmentNeeds) {
     const std::uint32_t nothing = mine("").program->cost().operations;
     const std::uint32_t sum = mine("s.n = s.n + f.z * 2.0;").program->cost().operations;
     const std::uint32_t branch = mine("if (f.z < e[0].z) { e[0] = f; s.n += sqrt(f.z); }").program->cost().operations;
@@ -160,8 +145,8 @@ TEST_F(ShaderPrograms, PriceGrowsWithWhatAFragmentNeeds) {
     EXPECT_GT(sum, nothing);
     EXPECT_GT(branch, sum);
     const auto nearest = [](std::uint32_t k) { return shipped("nearest_k.glsl", k, 0.5F).program->cost().operations; };
-    EXPECT_GT(nearest(8), nearest(4));
     EXPECT_GT(nearest(4), nearest(2));
+    EXPECT_GT(nearest(2), nearest(1));
 }
 
 TEST_F(ShaderPrograms, StoreFiniteFloats) {

@@ -79,7 +79,7 @@ INSTANTIATE_TEST_SUITE_P(physics, PredictionTest, testing::ValuesIn(rows_with_ru
 std::vector<std::string> all_ids() {
     std::vector<std::string> ids;
     for (const auto& [letter, count] :
-         std::vector<std::pair<char, int>>{{'R', 10}, {'H', 18}, {'C', 6}, {'N', 5}, {'S', 7}, {'L', 3}})
+         std::vector<std::pair<char, int>>{{'R', 10}, {'H', 20}, {'C', 6}, {'N', 5}, {'S', 7}, {'L', 3}})
         for (int i = 1; i <= count; ++i) ids.push_back(fmt::format("{}{}", letter, i));
     return ids;
 }

@@ -22,8 +22,8 @@ struct Interrupted {
     double seconds = 0; ///< from the signal to the end
 };
 
-Interrupted interrupt(const std::vector<std::string>& arguments, int signal, std::chrono::milliseconds after) {
-    ropsim_test::ProgramOptions options;
+Interrupted interrupt(const std::vector<std::string>& arguments, int signal, std::chrono::milliseconds after,
+                      ropsim_test::ProgramOptions options = {}) {
     Clock::time_point sent;
     options.while_running = [&](pid_t child) {
         std::this_thread::sleep_for(after);
@@ -62,6 +62,24 @@ TEST(CliInterruption, LeavesNoHalfWrittenFileLong) {
                   std::chrono::milliseconds(after));
         for (const std::string& file : folder.files()) EXPECT_EQ(file.find(".part"), std::string::npos) << file;
     }
+}
+
+// Nothing is left: neither the program that is recorded, nor a part of a trace.
+TEST(CliInterruption, ARecordingEndsWithItsProgram) {
+    if (tests::sanitized) GTEST_SKIP() << "a sanitizer does not go into other programs";
+    const TemporaryFolder folder;
+    const auto number = folder.path() / "number";
+    ropsim_test::ProgramOptions options;
+    options.environment = {"DISPLAY=:none"}; // so that no X server is started
+    const Interrupted run = interrupt({"record", "-o", (folder.path() / "x.rtrace").string(), "--", "sh", "-c",
+                                       "echo $$ > '" + number.string() + "'; exec sleep 60"},
+                                      SIGINT, std::chrono::milliseconds(start + 700), options);
+    if (run.outcome.error.find("recording needs") != std::string::npos) GTEST_SKIP() << run.outcome.error;
+    EXPECT_EQ(run.outcome.status, 130);
+    EXPECT_EQ(run.outcome.error, "ropsim: interrupted\n");
+    EXPECT_LT(run.seconds, patience);
+    EXPECT_EQ(folder.files(), std::vector<std::string>{"number"});
+    EXPECT_EQ(::kill(static_cast<pid_t>(std::stol(ropsim_test::file_text(number))), 0), -1);
 }
 
 TEST(CliInterruption, FullDiskBehindStandardOutput) {

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <numbers>
+#include <string_view>
 
 namespace deferred_lights_test {
 
@@ -44,6 +45,47 @@ TEST(DeferredLights, S003_E9_LightsAddUpInEightBits) {
             EXPECT_EQ(codes_at(replay.reference.colour, 3, 1, 1), glm::ivec4(sum.sum, sum.sum, sum.sum, 255))
                 << method << ' ' << sum.lights << " of " << sum.each;
         }
+    }
+}
+
+// Two sheets in one place: the ambient pass keeps the first one, whose depth both have. Each fragment of it is blended
+// (specification 003, section 1.7), unless a stencil lets each light come once to a pixel.
+TEST(DeferredLights, OfSurfacesInOnePlaceForwardRenderingLightsEach) {
+    for (const std::uint32_t lights : {1U, 2U}) {
+        Stage stage(3, 3);
+        stage.add_whole(1.0, {1, 0, 0, 1});
+        stage.add_whole(1.0, {0, 1, 0, 1});
+        for (std::uint32_t i = 0; i < lights; ++i) stage.add_light(glm::vec3(0.0F), 2.0F);
+        const auto picture = [&](const char* method, const char* once) {
+            return codes_at(
+                stage
+                    .replay("deferred", {method, once, fmt::format("lights={}", lights), "ambient=0", "specular=0",
+                                         "shadows=none", fmt::format("intensity={:.9f}", 4.0 * 100.0 / 255.0)})
+                    .reference.colour,
+                3, 1, 1);
+        };
+        const int each = static_cast<int>(100 * lights);
+        for (const char* method : methods) {
+            const bool forward = std::string_view(method).starts_with("method=fw");
+            EXPECT_EQ(picture(method, "lit_once=true"), glm::ivec4(each, 0, 0, 255)) << method << ' ' << lights;
+            EXPECT_EQ(picture(method, "lit_once=false"), glm::ivec4(each, forward ? each : 0, 0, 255))
+                << method << ' ' << lights;
+        }
+    }
+}
+
+// Where no two surfaces are in one place a stencil changes no pixel, with panes on odd rows alone, too.
+TEST(DeferredLights, AStencilChangesNothingElse) {
+    Stage stage(16, 16);
+    stage.add_whole(3.0, {0.2F, 0.9F, 0.4F, 1.0F});
+    stage.add({4, 3, 12, 13, 1.5, {0.9F, 0.3F, 0.1F, 0.4F}});
+    stage.add({0, 0, 7, 9, 2.0, {0.1F, 0.3F, 0.8F, 1.0F}});
+    for (int i = 0; i < 3; ++i) stage.add_light(glm::vec3(0.1F * static_cast<float>(i), 0.0F, 0.0F), 6.0F);
+    for (const char* method : {"method=fwd", "method=fw"}) {
+        const Replay without = stage.replay("deferred", {method, "lights=3", "map_size=16"}),
+                     with = stage.replay("deferred", {method, "lights=3", "map_size=16", "lit_once=true"});
+        EXPECT_EQ(with.reference.colour, without.reference.colour) << method;
+        EXPECT_EQ(with.run("existing").wrong_pixels, 0U) << method;
     }
 }
 

@@ -50,6 +50,41 @@ TEST(RecordingKBuffer, AKBufferSortsWhatBlendingDoesNot) {
     expect_near(Drawn(frames.recording, with_kbuffer("draws=1", 3)).at(4, 4), lay(far, lay(near, lay(middle, behind))));
 }
 
+// Menus: letters have the depth of the panel that they are written on, and came later.
+TEST(RecordingKBuffer, OfEqualDepthsTheLaterDrawIsInFront) {
+    RecordedFrames frames(width, height);
+    const std::uint32_t state = frames.add_state(over());
+    frames.clear({0.2F, 0.4F, 0.6F, 1});
+    for (const glm::vec4& colour : {glm::vec4(1, 0, 0, 0.5F), glm::vec4(0, 1, 0, 0.25F), glm::vec4(0, 0, 1, 0.75F)})
+        frames.draw(RecordedFrames::everything(colour, 0.5F), Shade::colour, state);
+    const glm::vec4 expected = Drawn(frames.recording).at(4, 4);
+    for (std::uint32_t k = 1; k <= 4; ++k)
+        expect_near(Drawn(frames.recording, with_kbuffer("blended", k)).at(4, 4), expected);
+    const Drawn kept(frames.recording, with_kbuffer("blended", 4));
+    for (const char* design : {"scoreboard", "blender", "linked-list"}) {
+        const pipeline::RunResult result = run(kept, design);
+        EXPECT_EQ(result.wrong_pixels, 0U) << design;
+        EXPECT_EQ(result.colour, kept.image.colour) << design;
+    }
+}
+
+TEST(RecordingKBuffer, AFrameWithoutDrawsForItSaysWhy) {
+    const auto refusal = [](const RasterState& state) -> std::string {
+        try {
+            const Drawn kept(layers(state).recording, with_kbuffer("blended", 3));
+        } catch (const sim::InputError& error) {
+            return error.what();
+        }
+        return "";
+    };
+    EXPECT_TRUE(refusal(depth_tested()).ends_with("expected a draw that can go through it, found none that blends"))
+        << refusal(depth_tested());
+    RasterState writes = over();
+    writes.depth.test = writes.depth.write = true;
+    EXPECT_TRUE(refusal(writes).ends_with("found none (not kept in the k-buffer: 3 blended draws: it writes depth)"))
+        << refusal(writes);
+}
+
 // Sums do not depend on the order.
 TEST(RecordingKBuffer, AKBufferKeepsWhatSumsGive) {
     for (const BlendFactor source : {BlendFactor::one, BlendFactor::source_alpha}) {
@@ -93,6 +128,35 @@ TEST(RecordingKBuffer, MachinesDrawTheReference) {
             EXPECT_GT(result.cycles, 100U);
         }
     }
+}
+
+// Entries that are read through the texture caches are lines there, and push texels out: 4 nodes of 96 quads take 5
+// lines each, a pipe's cache holds 64, the picture takes 16.
+TEST(RecordingKBuffer, EntriesPushTexelsOutOfTheTextureCaches) {
+    RecordedFrames frames(width, height);
+    frames.add_texture(16, 16, std::vector<std::uint32_t>(256, 0x33669980U));
+    const std::uint32_t state = frames.add_state(over()), bound = frames.bind(2);
+    frames.clear(black);
+    std::vector<RecordedFrames::Triangle> layer = RecordedFrames::everything(black);
+    for (auto& triangle : layer)
+        for (auto& corner : triangle) corner.colour = {(corner.position.x + 1) / 2, (corner.position.y + 1) / 2, 0, 1};
+    for (int i = 0; i < 8; ++i) frames.draw(layer, Shade::textured, state).bindings = bound;
+    const Drawn drawn(frames.recording, with_kbuffer("blended", 4));
+    const auto texel_bytes = [&drawn](const char* setting) {
+        sim::Config config;
+        config.set(setting);
+        const auto design = models::make_design("existing", config);
+        pipeline::Machine machine({}, drawn.frame, drawn.streams, *design);
+        const pipeline::RunResult result = machine.run(drawn.image);
+        std::uint64_t bytes = 0; // without those of the pass that lays the nodes
+        for (std::size_t draw = 0; draw < result.draws.size(); ++draw)
+            if (result.draws[draw].name == "draw") bytes += result.draw_counter(draw, "dram_texture_bytes");
+        return bytes;
+    };
+    const std::uint64_t through = texel_bytes("existing.bypass_l1=false"),
+                        past = texel_bytes("existing.bypass_l1=true");
+    EXPECT_LE(past, 16 * 64 * pipeline::GpuParams().fragment.pipes); // each texel once a pipe
+    EXPECT_GT(through, 2 * past);
 }
 
 } // namespace recording_kbuffer_test

@@ -125,7 +125,7 @@ TEST(RecordingLower, ASecondClearMayHaveAnotherValue) {
 
 TEST(RecordingLower, WhatNobodyClearedHoldsItsContents) {
     RecordedFrames frames(width, height);
-    frames.recording.surfaces[0].levels[0].resize(width * height * 4, std::byte{0x33});
+    frames.recording.surfaces[0].levels[0] = std::vector(width * height * 4, std::byte{0x33});
     frames.draw(RecordedFrames::rectangle({-1, -1}, {0, 1}, red));
     const Drawn drawn(frames.recording);
     EXPECT_EQ(drawn.at(2, 2), red);

@@ -94,6 +94,48 @@ Frame counted_frame(const traces::Scene& scene, const pipeline::View& view, cons
     return graph.lower();
 }
 
+/// White, or the colour of another surface at its own pixel.
+class CopyShader final : public pipeline::Shader {
+  public:
+    explicit CopyShader(bool reads) : reads_(reads) {}
+    pipeline::ShaderShape shape() const override { return {.reads = reads_ ? 1U : 0U}; }
+    void shade(const pipeline::ShaderInput& input, pipeline::SurfaceAccess& surfaces,
+               pipeline::ShaderOutput& output) const override {
+        const pipeline::QuadPlaces at(input);
+        output.colours[0].fill(glm::vec4(1.0F));
+        if (reads_) output.colours[0] = surfaces.fetch(0, at.x, at.y, input.pixels);
+    }
+
+  private:
+    bool reads_;
+};
+
+/// Fragments of a k-buffer whose shader reads a surface that was cleared and never drawn to, if it reads one.
+template <bool reads>
+Frame filled_frame(const traces::Scene& scene, const pipeline::View& view, const NoParams&) {
+    Frame frame = traces::frame_of(scene, view);
+    frame.program = models::make_nearest_k(models::EntryKind::rgbz, k);
+    traces::ShadedPass fill, count;
+    fill.name = "geometry";
+    fill.shader = std::make_shared<CopyShader>(reads);
+    if (reads) fill.reads = {"given"};
+    fill.draws = all_draws(frame);
+    fill.kbuffer = traces::kbuffer_surface;
+    count.name = "count";
+    count.shader = std::make_shared<CountShader>(k);
+    count.reads = {traces::kbuffer_surface};
+    count.targets = {"picture"};
+    count.screen = true;
+    traces::PassGraph graph(std::move(frame));
+    graph.add_surface({.name = "given", .width = view.width, .height = view.height});
+    graph.add_surface("picture", SurfaceFormat::rgba8);
+    graph.add_clear("clear", {"given", traces::kbuffer_surface});
+    graph.add_shaded(fill);
+    graph.add_shaded(count);
+    graph.output("picture");
+    return graph.lower();
+}
+
 using Build = Frame (*)(const traces::Scene&, const pipeline::View&, const NoParams&);
 
 support::Replay replay(const std::string& scene, Build build, std::uint32_t width = 64, std::uint32_t height = 64) {
@@ -150,6 +192,22 @@ TEST(ShadedPasses, AllTargetsTravelAndAreStoredTogether) {
     EXPECT_EQ(support::counter(*gbuffer.counters, "crossbar/bytes"), run.streams[0].fragments * bytes_of_fragment);
     const auto& clear = support::pass_named(result, "clear");
     EXPECT_EQ(support::counter(*clear.counters, "rop/clears"), 64U * 64 * bytes_of_fragment);
+}
+
+// Texture units do not know what is cleared, whichever way fragments take to their entries. What of entries and layers
+// has to be written for readers depends on where fragments are alone.
+TEST(ShadedPasses, AClearedSurfaceIsWrittenBeforeAKBufferPassReadsIt) {
+    const support::Replay reading = replay("gen:discs?n=20", filled_frame<true>),
+                          plain = replay("gen:discs?n=20", filled_frame<false>);
+    const auto resolved = [](const support::Replay& run, const char* design, const char* clear) {
+        return support::counter(run.run(design, {clear}).stages, "rop/counters/resolves");
+    };
+    for (const char* design : {"existing", "blender", "multipass", "dual-peel", "linked-list"}) {
+        EXPECT_EQ(resolved(reading, design, "rop.fast_clear=true"),
+                  resolved(plain, design, "rop.fast_clear=true") + 64 * 64 * 4)
+            << design;
+        EXPECT_EQ(resolved(reading, design, "rop.fast_clear=false"), 0U) << design;
+    }
 }
 
 TEST(ShadedPasses, TheFaultsOfAPassAreNotCountedBehindIt) {

@@ -6,6 +6,7 @@
 #include "tests/support/program_run.hpp"
 #include "tests/support/recordings.hpp"
 #include "tests/support/schema.hpp"
+#include "traces/glsl.hpp"
 #include "traces/trace.hpp"
 
 #include <algorithm>
@@ -31,6 +32,7 @@ const std::vector<Case> cases{
     {"gen:discs?n=40", "transparency", {"k=2", "background=[0.1,0.2,0.3]"}},
     {"gen:showroom", "transparency", {"program=mlab", "transparent=materials"}, 1, "4,3,6,0,0,0,40"},
     {"gen:stack?n=5", "transparency", {"program=nearest_k.kb"}, 4},
+    {"gen:discs?n=40", "transparency", {"program=order_and_blend.glsl", "k=3", "opacity=0.3"}},
     {"gen:grid-soup?boxes=8", "opaque", {}, 8},
     {"gen:discs?n=40", "blended", {}},
     {"gen:grass?blades=20", "geometry"},
@@ -74,7 +76,13 @@ void expect_equal_files(const std::filesystem::path& a, const std::filesystem::p
     EXPECT_GT(compared, 2U);
 }
 
-class TraceReplayOf : public ::testing::TestWithParam<Case> {};
+class TraceReplayOf : public ::testing::TestWithParam<Case> {
+  protected:
+    void SetUp() override {
+        for (const std::string& setting : GetParam().settings)
+            if (setting.ends_with(".glsl") && !traces::can_compile_glsl()) GTEST_SKIP() << "built without glslang";
+    }
+};
 
 TEST_P(TraceReplayOf, GivesTheSameBytes) {
     const Case& one = GetParam();

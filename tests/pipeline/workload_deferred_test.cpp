@@ -1,6 +1,7 @@
 // Deferred shading of one transparent layer (specification 003): passes, surfaces, rows, equations, methods against
 // each other, and that no design has anything to break.
 #include "pipeline/functional/fragment_operations.hpp"
+#include "pipeline/functional/frame_streams.hpp"
 #include "tests/support/frame_surfaces.hpp"
 #include "traces/deferred/shadow_filter.hpp"
 #include "traces/deferred/spot_lights.hpp"
@@ -296,6 +297,48 @@ TEST(Deferred, TheEyeMayLieWithinTheVolumeOfALight) {
         EXPECT_GT(lit, replay.reference.colour.size() / 4 + 64U * 48 / 4)
             << camera; // alpha, and a quarter of the pixels
     }
+}
+
+/// What a limit in bytes says to the fragments of a frame; empty: nothing.
+std::string refusal_of(const Frame& frame, std::uint64_t bytes) {
+    try {
+        rasterize_frame(frame, {}, {bytes, "the test allows"});
+    } catch (const sim::InputError& error) {
+        return error.what();
+    }
+    return {};
+}
+
+// Of the pass that goes beyond the limit, before it has room made for its fragments.
+TEST(Deferred, FragmentsThatDoNotFitIntoMemoryAreRefused) {
+    const Frame frame = frame_of({"lights=1", "map_size=32"}, 24, 18);
+    const std::string first = refusal_of(frame, 1);
+    EXPECT_TRUE(first.starts_with("pass G-buffer: 24x18 pixels: with its ")) << first;
+    EXPECT_NE(first.find(" quads the fragments of the frame need at least "), std::string::npos) << first;
+    EXPECT_NE(first.find(" MiB of memory, the test allows 0 MiB"), std::string::npos) << first;
+    std::uint64_t refused = 1, enough = std::uint64_t{1} << 25U;
+    EXPECT_EQ(refusal_of(frame, enough), "");
+    while (enough - refused > 4096) {
+        const std::uint64_t middle = refused + (enough - refused) / 2;
+        (refusal_of(frame, middle).empty() ? enough : refused) = middle;
+    }
+    // The last pass that draws is the light, whose shader waits for surfaces: its outputs come later.
+    EXPECT_TRUE(refusal_of(frame, refused).starts_with("pass light 0: ")) << refusal_of(frame, refused);
+    const auto streams = rasterize_frame(frame);
+    std::uint64_t held = 0;
+    for (const pipeline::FragmentStream& stream : streams) held += stream.quads.size() * 28;
+    EXPECT_GT(enough, held);
+    EXPECT_EQ(streams.size(), rasterize_frame(frame, {}, {enough, "the test allows"}).size());
+}
+
+TEST(Deferred, ShadowMapsThatTakeMuchMemoryAreTold) {
+    EXPECT_TRUE(frame_of({"map_size=2048"}, 16, 12).notes.empty());
+    EXPECT_EQ(
+        frame_of({"map_size=8192"}, 16, 12).notes,
+        std::vector<std::string>{"shadow maps of 8192x8192 texels: the fragments of each light take up to 3520 MiB "
+                                 "of memory for every layer of surfaces in its map"});
+    EXPECT_TRUE(frame_of({"map_size=8192", "shadows=none"}, 16, 12).notes.empty());
+    EXPECT_TRUE(frame_of({"map_size=8192", "lights=0"}, 16, 12).notes.size() == 1); // there are no lights
 }
 
 std::string error_of(const Settings& settings, const std::string& scene = "gen:slabs", std::uint32_t samples = 1) {

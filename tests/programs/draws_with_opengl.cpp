@@ -1,25 +1,23 @@
 // A program that draws with OpenGL, to be recorded: one frame for each scenario that is named, of 64 x 48 pixels,
 // without a window system. Ends with status 77 where there is no such OpenGL, and with 3 where what is its own was
-// disturbed.
-#define GL_GLEXT_PROTOTYPES
+// disturbed. With --pixels=FILE in front, the windows' RGBA bytes go there, frame by frame, rows from the bottom.
+#include "opengl_scenarios.hpp"
+
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
-#include <GL/gl.h>
-
-#include <GL/glext.h>
-
-#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <map>
-#include <string>
 #include <vector>
+
+using scenarios::clear;
+using scenarios::height;
+using scenarios::linked;
+using scenarios::width;
 
 namespace {
 
 constexpr int no_opengl = 77, disturbed = 3;
-constexpr int width = 64, height = 48;
 
 bool make_current(EGLDisplay& display, EGLSurface& surface) {
     setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
@@ -60,7 +58,9 @@ GLuint shader(GLenum kind, const char* source) {
     return name;
 }
 
-GLuint linked(const char* vertex, const char* fragment) {
+} // namespace
+
+GLuint scenarios::linked(const char* vertex, const char* fragment) {
     const GLuint program = glCreateProgram();
     glAttachShader(program, shader(GL_VERTEX_SHADER, vertex));
     glAttachShader(program, shader(GL_FRAGMENT_SHADER, fragment));
@@ -68,6 +68,13 @@ GLuint linked(const char* vertex, const char* fragment) {
     glLinkProgram(program);
     return program;
 }
+
+void scenarios::clear() {
+    glClearColor(0.25F, 0.5F, 0.75F, 1.0F);
+    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+}
+
+namespace {
 
 constexpr const char* coloured_vertex = R"(attribute vec2 place;
 uniform mat2 turn;
@@ -108,11 +115,6 @@ void stop_using() {
     glDisableVertexAttribArray(3);
     glBindBuffer(GL_ARRAY_BUFFER, 0);
     glUseProgram(0);
-}
-
-void clear() {
-    glClearColor(0.25F, 0.5F, 0.75F, 1.0F);
-    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 }
 
 void arrays() {
@@ -284,27 +286,43 @@ bool is_undisturbed() {
            is(GL_PACK_ALIGNMENT, 4);
 }
 
+/// At once: the program may end in the swap that follows.
+void write_pixels(std::FILE* file) {
+    std::vector<unsigned char> bytes(static_cast<std::size_t>(width) * height * 4);
+    glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, bytes.data());
+    std::fwrite(bytes.data(), 1, bytes.size(), file);
+    std::fflush(file);
+}
+
 } // namespace
 
 int main(int count, char** arguments) {
     EGLDisplay display = EGL_NO_DISPLAY;
     EGLSurface surface = EGL_NO_SURFACE;
     if (!make_current(display, surface)) return no_opengl;
-    const std::map<std::string, void (*)()> scenarios{
+    std::map<std::string, void (*)()> all{
         {"arrays", arrays},   {"elements", elements},       {"immediate", immediate},
         {"lists", lists},     {"named_lists", named_lists}, {"texture", texture},
         {"targets", targets}, {"states", states},           {"unrecorded", unrecorded},
     };
+    all.merge(scenarios::of_states());
+    constexpr const char* option = "--pixels=";
+    std::FILE* pixels = nullptr;
     bool good = true;
     for (int i = 1; i < count; ++i) {
+        if (std::strncmp(arguments[i], option, std::strlen(option)) == 0) {
+            pixels = std::fopen(arguments[i] + std::strlen(option), "wb");
+            continue;
+        }
         if (std::strcmp(arguments[i], "undisturbed") == 0) {
             good = is_undisturbed();
         } else {
             glPushAttrib(GL_ALL_ATTRIB_BITS);
-            scenarios.at(arguments[i])();
+            all.at(arguments[i])();
             glPopAttrib();
         }
         if (!good) return disturbed;
+        if (pixels != nullptr) write_pixels(pixels);
         eglSwapBuffers(display, surface);
     }
     return 0;

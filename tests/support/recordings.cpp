@@ -183,7 +183,7 @@ void add_surfaces(traces::Recording& recording) {
     recording.surfaces.push_back(empty_surface("shadow", SurfaceFormat::d32f, 8, 8));
     recording.surfaces.push_back(
         full_surface("half there", SurfaceKind::plane, SurfaceFormat::rgba8, {16, 16, 1}, 5, 70));
-    recording.surfaces.back().levels[3].clear();
+    recording.surfaces.back().levels[3] = {};
     for (std::uint32_t i = 0; i < pipeline::surface_formats.size(); ++i)
         recording.surfaces.push_back(full_surface("format " + std::to_string(i), SurfaceKind::plane,
                                                   static_cast<SurfaceFormat>(i), {2, 1, 1}, 1, i));

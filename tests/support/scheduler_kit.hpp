@@ -1,16 +1,35 @@
 // A fragment scheduler between a source of quads and one mock of everything behind it.
 #pragma once
 
+#include "models/kbuffers/library.hpp"
 #include "pipeline/fragment/fragment_scheduler.hpp"
+#include "sim/config.hpp"
 #include "tests/support/quad_kit.hpp"
 #include "tests/support/sim_kit.hpp"
 
 #include <map>
 #include <optional>
+#include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 namespace tests {
+
+/// The hardware in front of the pipes that the scoreboard design builds. `settings`: "side_buffer=4".
+inline pipeline::SchedulingPlan scoreboard_plan(const QuadPass& pass, const std::vector<std::string>& settings = {}) {
+    sim::Config config;
+    for (const std::string& setting : settings) config.set("scoreboard." + setting);
+    pipeline::View view;
+    view.width = pass.stream.width;
+    view.height = pass.stream.height;
+    return std::move(models::make_design("scoreboard", config)->plan(pass.program(), view).scheduling);
+}
+
+/// A pass whose fragments modify the k-buffer.
+struct KBufferPass : QuadPass {
+    KBufferPass() { context.end = pipeline::FragmentEnd::kbuffer_blend; }
+};
 
 struct BackEndOptions {
     pipeline::FragmentSchedulerParams scheduler = {};

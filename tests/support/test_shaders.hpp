@@ -25,7 +25,7 @@ class GBufferShader final : public pipeline::Shader {
 /// Reads such a G-buffer, colours as 0 and normals as 1, at its own pixel, and lights it from the eye.
 class LightingShader final : public pipeline::Shader {
   public:
-    pipeline::ShaderShape shape() const override { return {.reads = 2}; }
+    pipeline::ShaderShape shape() const override { return {.reads = 2, .discards = false}; }
     void shade(const pipeline::ShaderInput& input, pipeline::SurfaceAccess& surfaces,
                pipeline::ShaderOutput& output) const override {
         const pipeline::QuadPlaces at(input);

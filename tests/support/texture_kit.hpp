@@ -35,7 +35,7 @@ number_surface(pipeline::SurfaceInfo info,
                     const auto bytes = std::bit_cast<std::array<std::byte, 4>>(value(level, plane, x, y));
                     levels[level].insert(levels[level].end(), bytes.begin(), bytes.end());
                 }
-    info.contents = pipeline::make_contents(info, levels);
+    info.contents = pipeline::make_contents(info, {levels.begin(), levels.end()});
     return info;
 }
 

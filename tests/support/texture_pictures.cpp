@@ -94,7 +94,8 @@ void fill(traces::RecordedSurface& surface, std::uint32_t levels,
           const std::function<glm::vec4(std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t)>& value) {
     surface.levels.assign(levels, {});
     const pipeline::SurfaceInfo info = traces::surface_of(surface);
-    for (std::uint32_t level = 0; level < levels; ++level)
+    for (std::uint32_t level = 0; level < levels; ++level) {
+        std::vector<std::byte> texels;
         for (std::uint32_t plane = 0; plane < info.planes_of(level); ++plane)
             for (std::uint32_t y = 0; y < info.height_of(level); ++y)
                 for (std::uint32_t x = 0; x < info.width_of(level); ++x) {
@@ -107,9 +108,10 @@ void fill(traces::RecordedSurface& surface, std::uint32_t levels,
                         pipeline::pack_integers(surface.format, glm::uvec4(colour), texel.data());
                     else
                         pipeline::pack_colour(surface.format, colour, texel.data());
-                    surface.levels[level].insert(surface.levels[level].end(), texel.begin(),
-                                                 texel.begin() + info.texel_bytes());
+                    texels.insert(texels.end(), texel.begin(), texel.begin() + info.texel_bytes());
                 }
+        surface.levels[level] = std::move(texels);
+    }
 }
 
 } // namespace tests

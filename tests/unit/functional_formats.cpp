@@ -95,6 +95,17 @@ TEST(ColourTexels, WhatIsReadBackIsTheNearestStorableColour) {
               glm::vec4(half_to_float(float_to_half(0.1F)), 1.5F, -0.25F, 0.5F));
 }
 
+TEST(ColourTexels, AlphaTestsTellAsManyStepsAsTheFormatStores) {
+    EXPECT_EQ(alpha_steps(SurfaceFormat::rgba8), 255U);
+    EXPECT_EQ(alpha_steps(SurfaceFormat::srgb8a8), 255U);
+    EXPECT_EQ(alpha_steps(SurfaceFormat::rgb10a2), 3U);
+    EXPECT_EQ(alpha_steps(SurfaceFormat::rgba16), 65535U);
+    EXPECT_EQ(alpha_steps(SurfaceFormat::rg8), 255U); // has none
+    for (const SurfaceFormat format : {SurfaceFormat::rgba16f, SurfaceFormat::rgba32f, SurfaceFormat::r11g11b10f,
+                                       SurfaceFormat::rgba8s, SurfaceFormat::rgba8u, SurfaceFormat::d24s8})
+        EXPECT_EQ(alpha_steps(format), 0U);
+}
+
 TEST(ColourTexels, NothingInfiniteIsStored) {
     for (const SurfaceFormat format : {SurfaceFormat::rgba8, SurfaceFormat::rgba16f, SurfaceFormat::rgba32f}) {
         const glm::vec4 back = through_format(format, glm::vec4(infinity, -infinity, not_a_number, 1e30F));

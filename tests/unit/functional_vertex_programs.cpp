@@ -7,7 +7,9 @@
 #include "sim/check.hpp"
 #include "tests/support/functional_scene.hpp"
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
 #include <functional>
 #include <gtest/gtest.h>
 #include <limits>
@@ -103,7 +105,8 @@ TEST(VertexPrograms, VaryingsAreInterpolatedAsVertexColoursAre) {
     const FragmentStream fixed = scene.rasterize(unlit);
     scene.draws[0].program = same_as_fixed(scene);
     const FragmentStream programmed = scene.rasterize(without_colours());
-    ASSERT_EQ(programmed.varyings, 3U);
+    ASSERT_FALSE(programmed.quads.empty());
+    ASSERT_EQ(programmed.varyings_of(0).size(), 3U);
     for (pipeline::QuadId quad = 0; quad < fixed.quads.size(); ++quad) {
         const ShaderInput input = pipeline::shader_input(programmed, quad);
         for (std::size_t lane = 0; lane < 4; ++lane) {
@@ -126,6 +129,32 @@ TEST(VertexPrograms, TheFirstVaryingHasTheW) {
             const float w = pipeline::shader_input(stream, quad).varyings[0][lane].x;
             EXPECT_NEAR((1.02F * w - 0.2F) / w, z, 5e-4F);
         }
+}
+
+// x over w is linear on the screen, also where a corner lies behind the eye: 16 pixels are one of it.
+TEST(VertexPrograms, LinearVaryingsAreThoseOfTheScreen) {
+    FunctionalScene scene = tilted();
+    const auto placed = same_as_fixed(scene);
+    scene.draws[0].program =
+        std::make_shared<const Program>(pipeline::VertexProgramShape{.varyings = 2, .linear = 2},
+                                        [placed](std::uint32_t instance, std::uint32_t number, Program::Vertex vertex) {
+                                            std::array<glm::vec4, 2> unused{};
+                                            placed->run(instance, number, {{&vertex.position, 1}, unused, {}, {}});
+                                            vertex.varyings[0] = vertex.varyings[1] =
+                                                vertex.position / vertex.position.w;
+                                        });
+    const FragmentStream stream = scene.rasterize(without_colours());
+    EXPECT_TRUE(stream.primitives[0].clipped);
+    float in_perspective = 0;
+    for (pipeline::QuadId quad = 0; quad < stream.quads.size(); ++quad)
+        for (std::uint32_t lane = 0; lane < 4; ++lane) {
+            if ((stream.quads[quad].covered >> lane & 1U) == 0) continue;
+            const ShaderInput input = pipeline::shader_input(stream, quad);
+            const float x = (static_cast<float>(input.x + lane % 2) + 0.5F) / 16.0F - 1.0F;
+            EXPECT_NEAR(input.varyings[2][lane].x, x, 1e-3F); // corners lie within 1/512 of a pixel
+            in_perspective = std::max(in_perspective, std::fabs(input.varyings[1][lane].x - x));
+        }
+    EXPECT_GT(in_perspective, 0.01F);
 }
 
 TEST(VertexPrograms, FlatVaryingsKeepTheBitsOfTheProvokingVertex) {
@@ -244,6 +273,63 @@ TEST(VertexPrograms, InstancesKnowTheirNumber) {
     ASSERT_EQ(stream.quads.size(), 3U);
     for (pipeline::QuadId quad = 0; quad < 3; ++quad)
         EXPECT_EQ(pipeline::shader_input(stream, quad).varyings[1][0].x, static_cast<float>(quad));
+}
+
+/// Vertex i takes `each` and i more instructions.
+class CountingProgram final : public pipeline::VertexProgram {
+  public:
+    explicit CountingProgram(std::uint32_t each) : each_(each) {}
+    pipeline::VertexProgramShape shape() const override { return {}; }
+    void run(std::uint32_t, std::uint32_t first, const ProgramVertices& vertices) const override {
+        for (std::uint32_t i = 0; i < vertices.positions.size(); ++i) {
+            vertices.positions[i] = {0, 0, 0, 1};
+            vertices.instructions[i] = each_ + first + i;
+        }
+    }
+
+  private:
+    std::uint32_t each_;
+};
+
+TEST(VertexPrograms, RangesHaveTheMeanOfTheirInstructions) {
+    FunctionalScene scene = points([](std::uint32_t, std::uint32_t, Program::Vertex) {}, {}, 9000);
+    EXPECT_EQ(scene.rasterize(without_colours()).draws[0].vertex_instructions, 0U); // it does not count
+    scene.draws[0].program = std::make_shared<const CountingProgram>(7);
+    scene.draws[0].instances.assign(2, glm::mat4(1.0F));
+    for (const unsigned threads : {1U, 3U}) {
+        FrontEndOptions options = without_colours();
+        options.threads = threads;
+        const FragmentStream stream = scene.rasterize(options);
+        for (const pipeline::DrawRange& range : stream.draws)
+            EXPECT_EQ(range.vertex_instructions, 7U + 4500U); // of 4499.5, rounded
+    }
+}
+
+TEST(VertexPrograms, AQuadKeepsAsManyVaryingsAsItsDrawHas) {
+    FunctionalScene scene = tilted();
+    const auto with_two = same_as_fixed(scene);
+    scene.draws.resize(4, scene.draws[0]);
+    scene.draws[0].program = scene.draws[3].program = with_two;
+    scene.draws[2].program = std::make_shared<const Program>(
+        pipeline::VertexProgramShape{},
+        [with_two](std::uint32_t instance, std::uint32_t number, Program::Vertex vertex) {
+            std::array<glm::vec4, 2> unused{};
+            with_two->run(instance, number, {{&vertex.position, 1}, unused, {}, {}});
+        });
+    const FragmentStream stream = scene.rasterize(without_colours());
+    const std::size_t quads = stream.quads.size() / 4;
+    ASSERT_EQ(stream.quads.size(), quads * 4);
+    EXPECT_EQ(stream.given_varyings.size(), quads * (3 + 0 + 1 + 3));
+    for (pipeline::QuadId quad = 0; quad < quads; ++quad) {
+        const auto of_draw = [&](std::size_t draw) {
+            return stream.varyings_of(static_cast<pipeline::QuadId>(quad + draw * quads));
+        };
+        EXPECT_TRUE(of_draw(1).empty());
+        ASSERT_EQ(of_draw(2).size(), 1U);
+        EXPECT_EQ(of_draw(2)[0], of_draw(0)[0]);
+        ASSERT_EQ(of_draw(3).size(), 3U);
+        for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(of_draw(3)[i], of_draw(0)[i]) << quad << " " << i;
+    }
 }
 
 TEST(VertexPrograms, WithoutAProgramADrawNeedsPositions) {

@@ -28,8 +28,9 @@ RecordedSurface recorded(const std::string& name, SurfaceFormat format, std::uin
     surface.format = format;
     surface.width = width;
     surface.height = height;
-    surface.levels[0].resize(texels.size() * sizeof(Texel));
-    std::memcpy(surface.levels[0].data(), texels.data(), surface.levels[0].size());
+    std::vector<std::byte> bytes(texels.size() * sizeof(Texel));
+    std::memcpy(bytes.data(), texels.data(), bytes.size());
+    surface.levels[0] = std::move(bytes);
     return surface;
 }
 
@@ -178,7 +179,7 @@ TEST(RecordedTextures, SurfacesBecomeThoseOfThePipeline) {
     EXPECT_EQ(surface_of(surface).planes_of(1), 3U);
     surface.kind = SurfaceKind::layers;
     EXPECT_EQ(surface_of(surface).planes_of(1), 6U);
-    surface.levels[1].resize(4 * 2 * 6 * 4 - 1);
+    surface.levels[1] = std::vector<std::byte>(4 * 2 * 6 * 4 - 1);
     EXPECT_THROW(surface_of(surface), sim::InputError);
 }
 

@@ -42,7 +42,7 @@ TEST(ReportsCatalogue, GeneratorsAreFoundWithAndWithoutPrefix) {
 }
 
 TEST(ReportsCatalogue, ShippedProgramFilesAreListed) {
-    for (const char* file : {"nearest_k.kb", "order_and_blend.kb"}) {
+    for (const char* file : {"nearest_k.kb", "order_and_blend.kb", "nearest_k.glsl", "order_and_blend.glsl"}) {
         const auto found = reports::catalogue_find(file);
         ASSERT_EQ(found.size(), 1U) << file;
         EXPECT_EQ(found.front().topic, "programs");

@@ -81,6 +81,20 @@ TEST(ReportsFiles, WithoutCommitNothingStays) {
     EXPECT_EQ(folder.files().size(), 0U);
 }
 
+// A rename would put a file in their place.
+TEST(ReportsFiles, FoldersAndDevicesAreNotReplaced) {
+    const TemporaryFolder folder;
+    for (const std::filesystem::path& path : {folder.path(), std::filesystem::path("/dev/null")}) {
+        const std::string expected = path.string() + ": expected the name of a file to write";
+        EXPECT_EQ(message_of([&] { sim::check_writable(path); }), expected);
+        EXPECT_EQ(message_of([&] { reports::write_file(path, "x"); }), expected);
+    }
+    EXPECT_EQ(message_of([&] { sim::check_writable(folder.path() / "none" / "a.txt"); }),
+              (folder.path() / "none" / "a.txt").string() + ": cannot be written: No such file or directory");
+    sim::check_writable(folder.path() / "a.txt");
+    EXPECT_EQ(folder.files(), std::vector<std::string>());
+}
+
 TEST(ReportsFiles, FullDiskLeavesTheOldFileAndNothingElse) {
     const TemporaryFolder folder;
     const auto path = folder.path() / "a.txt";

@@ -7,6 +7,7 @@
 #include "tests/support/test_shaders.hpp"
 #include "traces/pass_graph.hpp"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 #include <memory>
 
@@ -103,6 +104,24 @@ TEST(ShadePass, OutputsGoToTheirTargetsAndAreReadByTheNextPass) {
             EXPECT_NEAR(pixel[1], x < 5 ? albedo * 0.8F : 0.0F, 1e-6F) << x << ' ' << y;
             EXPECT_EQ(pixel[3], 1.0F); // every pixel of the screen
         }
+}
+
+TEST(ShadePass, OnlyWhatNobodyAsksForBeforeIsShadedLate) {
+    FunctionalScene scene = half_screen();
+    const Frame frame = deferred(scene).lower();
+    const auto streams = pipeline::rasterize_frame(frame);
+    const auto of_kind = [&frame](pipeline::PassKind kind) {
+        return *std::find_if(frame.passes.begin(), frame.passes.end(),
+                             [kind](const pipeline::Pass& pass) { return pass.kind == kind; });
+    };
+    const pipeline::Pass lighting = of_kind(pipeline::PassKind::screen);
+    EXPECT_TRUE(pipeline::shades_late(lighting, streams[1]));
+    EXPECT_FALSE(pipeline::shades_late(of_kind(pipeline::PassKind::draw), streams[0]));
+    pipeline::Pass discarding = lighting, onto_itself = lighting;
+    discarding.shader = std::make_shared<tests::SieveShader>();
+    onto_itself.targets = {lighting.reads[0]};
+    EXPECT_FALSE(pipeline::shades_late(discarding, streams[1]));
+    EXPECT_FALSE(pipeline::shades_late(onto_itself, streams[1]));
 }
 
 TEST(ShadePass, SameForAnyNumberOfThreads) {

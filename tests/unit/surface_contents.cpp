@@ -19,7 +19,7 @@ std::vector<std::byte> counting(std::size_t count, unsigned first = 0) {
     return bytes;
 }
 
-std::string refusal(const SurfaceInfo& info, const std::vector<std::vector<std::byte>>& levels) {
+std::string refusal(const SurfaceInfo& info, const std::vector<SharedBytes>& levels) {
     try {
         make_contents(info, levels);
     } catch (const sim::InputError& error) {
@@ -30,8 +30,8 @@ std::string refusal(const SurfaceInfo& info, const std::vector<std::vector<std::
 
 TEST(SurfaceContents, BytesLieByLevelPlaneRowAndTexel) {
     SurfaceInfo info{.name = "t", .format = SurfaceFormat::rg8, .width = 19, .height = 5, .planes = 3, .levels = 2};
-    const std::vector<std::vector<std::byte>> levels{counting(std::size_t{19} * 5 * 3 * 2),
-                                                     counting(std::size_t{9} * 2 * 3 * 2, 100)};
+    const std::vector<SharedBytes> levels{counting(std::size_t{19} * 5 * 3 * 2),
+                                          counting(std::size_t{9} * 2 * 3 * 2, 100)};
     info.contents = make_contents(info, levels);
     const SurfaceStore store(std::span(&info, 1));
     for (std::uint32_t level = 0; level < 2; ++level)

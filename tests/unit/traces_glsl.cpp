@@ -94,11 +94,29 @@ TEST_F(Glsl, TruthsMayBePlainUniforms) {
 TEST_F(Glsl, MistakesNameProgramStageAndLine) {
     EXPECT_EQ(problem_of({"lamp", {}, {"void main() {\n  gl_FragColor = colour;\n}"}, {}}),
               "lamp: expected GLSL that glslang compiles: fragment shader, line 2: 'colour' : undeclared identifier ");
+    try {
+        traces::compile_glsl({"lamp", {}, {"void main() {\n  gl_FragColor = colour;\n}"}, {}});
+        FAIL();
+    } catch (const traces::GlslError& error) {
+        EXPECT_EQ(error.line, 2U);
+        EXPECT_EQ(error.problem, "'colour' : undeclared identifier");
+    }
     const std::string link = problem_of({"lamp",
                                          {"varying vec2 v; void main() { gl_Position = vec4(0.0); v = vec2(0.0); }"},
                                          {"varying vec3 v; void main() { gl_FragColor = v.xyzz; }"},
                                          {}});
     EXPECT_TRUE(link.starts_with("lamp: expected GLSL that glslang compiles: linking, ")) << link;
+}
+
+TEST(GlslErrors, TakeTheLineOutOfWhatTheModuleSays) {
+    const auto error = [](const char* failure) { return traces::GlslError("lamp", failure); };
+    EXPECT_EQ(error("fragment shader, line 12: 'x' : ").line, 12U);
+    EXPECT_EQ(error("fragment shader, line 12: 'x' : ").problem, "'x' :");
+    for (const char* failure :
+         {"", "linking, no main", "fragment shader, line x: y", "vertex shader, line 3", "a, line "}) {
+        EXPECT_EQ(error(failure).line, 0U) << failure;
+        EXPECT_EQ(error(failure).problem, failure);
+    }
 }
 
 } // namespace glsl_test

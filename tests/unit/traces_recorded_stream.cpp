@@ -159,6 +159,77 @@ TEST(RecordedStream, CopiesOfWindowsLeaveThemAsTheyLie) {
     EXPECT_EQ(copied.rectangle, (pipeline::PixelRectangle{3, 0, 1, 2}));
 }
 
+traces::RecordedBlit imported_blit(const record_stream::Blit& blit) {
+    Stream stream = window_stream();
+    record_stream::Surface texture;
+    texture.name = "texture";
+    texture.target = GL_TEXTURE_2D;
+    texture.bits = {8, 8, 8, 8, 0, 0, 0, 0};
+    texture.format = GL_RGBA;
+    texture.type = GL_UNSIGNED_BYTE;
+    texture.levels = {{8, 8, 1, -1}};
+    stream.add(Tag::surface, texture).add(Tag::blit, blit).add(Tag::frame, frame_of(0));
+    const traces::Recording recording = traces::recorded::import_stream(stream.bytes).recording;
+    EXPECT_FALSE(recording.targets.at(recording.frames.at(0).shown).top_row_first);
+    return std::get<traces::RecordedBlit>(recording.frames[0].commands.at(0));
+}
+
+TEST(RecordedStream, BlitsHaveRectanglesAndSayWhichWayTheyRun) {
+    record_stream::Blit blit;
+    blit.call = "glBlitFramebuffer";
+    blit.from.surface = 1;
+    blit.to.surface = 0;
+    blit.source = {1, 7, 5, 3};
+    blit.destination = {10, 2, -2, 0};
+    const traces::RecordedBlit both = imported_blit(blit);
+    EXPECT_EQ(both.from.surface, 1U);
+    EXPECT_EQ(both.source, (pipeline::PixelRectangle{1, 3, 4, 4}));
+    EXPECT_EQ(both.destination, (pipeline::PixelRectangle{-2, 0, 12, 2}));
+    EXPECT_TRUE(both.mirrored_x);
+    EXPECT_FALSE(both.mirrored_y); // both run downwards
+    EXPECT_FALSE(both.linear);
+    EXPECT_EQ(both.scissor, std::nullopt);
+    blit.source = {1, 3, 5, 7};
+    blit.linear = blit.scissor_test = true;
+    blit.scissor = {1, 0, 2, 1};
+    const traces::RecordedBlit cut = imported_blit(blit);
+    EXPECT_TRUE(cut.mirrored_y);
+    EXPECT_TRUE(cut.linear);
+    EXPECT_EQ(cut.scissor, (pipeline::PixelRectangle{1, 0, 2, 1}));
+}
+
+TEST(RecordedStream, BlitsOfNothingAreNoneAndHugeOnesAreCounted) {
+    const auto imported = [](const std::array<std::int32_t, 4>& destination) {
+        Stream stream = window_stream();
+        record_stream::Blit blit;
+        blit.call = "glBlitFramebuffer";
+        blit.from.surface = blit.to.surface = 0;
+        blit.source = {0, 0, 4, 2};
+        blit.destination = destination;
+        stream.add(Tag::blit, blit).add(Tag::frame, frame_of(0));
+        return traces::recorded::import_stream(stream.bytes).recording;
+    };
+    const traces::Recording none = imported({3, 1, 3, 5});
+    EXPECT_TRUE(none.frames.at(0).commands.empty());
+    EXPECT_TRUE(none.not_recorded.empty());
+    const traces::Recording huge = imported({0, 0, 65537, 1});
+    EXPECT_TRUE(huge.frames.at(0).commands.empty());
+    ASSERT_EQ(huge.not_recorded.size(), 1U);
+    EXPECT_EQ(huge.not_recorded[0], (traces::NotRecorded{"glBlitFramebuffer of more than 65536 pixels a side", 1}));
+}
+
+TEST(RecordedStream, DepthRangesAreStates) {
+    record_stream::State state = plain_state();
+    const std::size_t range = record_stream::place_of(record_stream::state_names, GL_DEPTH_RANGE);
+    state.values[range] = 0.75;
+    state.values[range + 1] = 0.25;
+    Counted counted;
+    const auto raster = traces::recorded::raster_state_of(state, {2, true, GL_TRIANGLES}, counted.count);
+    EXPECT_EQ(raster.depth.range_near, 0.75F);
+    EXPECT_EQ(raster.depth.range_far, 0.25F);
+    EXPECT_TRUE(counted.calls.empty());
+}
+
 TEST(RecordedStream, AlphaThatIsNotThereIsNotWritten) {
     Stream stream = window_stream(false);
     stream.add(Tag::clear, clear_of(window_targets())).add(Tag::frame, frame_of(0));

@@ -210,7 +210,7 @@ TEST(RecordingCheck, SurfacesAndSamplers) {
     expect_refused("surface 2: expected 1 to 3 levels, got 4", [](Recording& r) { r.surfaces[2].levels.resize(4); });
     expect_refused("surface 0: expected 1 to 5 levels, got 0", [](Recording& r) { r.surfaces[0].levels.clear(); });
     expect_refused("surface 2: expected 8 bytes in level 1, got 7",
-                   [](Recording& r) { r.surfaces[2].levels[1].pop_back(); });
+                   [](Recording& r) { r.surfaces[2].levels[1] = std::vector<std::byte>(7); });
     expect_refused("sampler 1: expected an anisotropy of 1", [](Recording& r) { r.samplers[1].anisotropy = 0.5F; });
     expect_refused("magnification that is",
                    [](Recording& r) { r.samplers[1].mag_filter = pipeline::Filter::linear_mip_linear; });
@@ -230,6 +230,8 @@ TEST(RecordingCheck, ProgramsBindingsStatesAndTargets) {
     expect_refused("state 2: expected a viewport", [](Recording& r) {
         r.states[2].viewport = pipeline::PixelRectangle{0, 0, 0, 5};
     });
+    expect_refused("state 2: expected a depth range within 0 to 1, got 0 to 1.5",
+                   [](Recording& r) { r.states[2].depth.range_far = 1.5F; });
     expect_refused("state 2: expected a write mask below 16", [](Recording& r) { r.states[2].write_mask[7] = 16; });
     expect_refused("targets 2: expected one of 3 levels, got 3",
                    [](Recording& r) { r.targets[2].colours[0]->level = 3; });
@@ -344,8 +346,9 @@ TEST_F(RecordedFile, ShadersAreWholeWords) {
 TEST_F(RecordedFile, CodesAndFlagsAreThoseThatThereAre) {
     Bytes& frames = chunk_of(chunk::frames).content;
     // A count, number, shown, a count, the kind.
-    frames[4 + 4 + 4 + 4] = std::byte{3};
-    expect("chunk FRAM: content byte 16: frame 0 command 0 kind: expected a code below 3 (draw, clear, copy), got 3");
+    frames[4 + 4 + 4 + 4] = std::byte{4};
+    expect("chunk FRAM: content byte 16: frame 0 command 0 kind: expected a code below 4 (draw, clear, copy, blit), "
+           "got 4");
     Bytes& targets = chunk_of(chunk::targets).content;
     targets[4 + 8] = std::byte{2};
     expect("targets 0 top row first: expected a code below 2 (no, yes), got 2");

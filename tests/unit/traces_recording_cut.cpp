@@ -124,6 +124,39 @@ TEST_F(RecordingCut, AClearOfPartsDoesNotSetAll) {
               2U + 3U + 5U);
 }
 
+TEST_F(RecordingCut, AWindowWithoutAlphaIsSetByAClearOfThreeChannels) {
+    recording_.states[0].write_mask[0] = 7;
+    for (traces::RecordedFrame& frame : recording_.frames)
+        for (traces::RecordedCommand& command : frame.commands)
+            if (auto* const clear = std::get_if<RecordedClear>(&command)) clear->write_mask[0] = 7;
+    EXPECT_EQ(names_of(frames(6, 7).frames.at(0)), (Names{"clear map", "map", "all", "a", "use", "c", "all"}));
+    recording_.states[0].write_mask[0] = 8;
+    EXPECT_EQ(names_of(frames(6, 7).frames.at(0)).size(), 4U + 3U + 5U); // all of the frames before
+}
+
+TEST_F(RecordingCut, ContentsThatAreSetFirstAreForgotten) {
+    for (std::size_t surface : {0U, 1U})
+        recording_.surfaces[surface].levels[0] = std::vector(std::size_t{16} * 12 * 4, std::byte{0x55});
+    const auto window = [&] { return frames(5, 6).surfaces.at(0).levels.at(0); };
+    EXPECT_TRUE(window().empty());
+    EXPECT_TRUE(frames(5, 6).surfaces.at(1).levels.at(0).empty());
+    EXPECT_EQ(frames(5, 6).surfaces.at(2), recording_.surfaces[2]); // nobody writes it
+    // What nothing writes keeps its value.
+    recording_.states[0].write_mask[0] = 7;
+    for (traces::RecordedFrame& frame : recording_.frames)
+        for (traces::RecordedCommand& command : frame.commands)
+            if (auto* const clear = std::get_if<RecordedClear>(&command)) clear->write_mask[0] = 7;
+    ASSERT_EQ(window().size(), std::size_t{16} * 12 * 4);
+    for (std::size_t i = 0; i < 8; ++i)
+        EXPECT_EQ(window()[i], std::byte{static_cast<unsigned char>(i % 4 == 3 ? 0x55 : 0)}) << i;
+    // A part that stays unset is seen.
+    for (traces::RecordedFrame& frame : recording_.frames)
+        std::get<RecordedClear>(frame.commands[frame.number == 4 ? 2 : 0]).scissor =
+            pipeline::PixelRectangle{0, 0, 16, 11};
+    EXPECT_EQ(window(), recording_.surfaces[0].levels[0]);
+    EXPECT_EQ(frames(5, 6).surfaces.at(1), recording_.surfaces[1]);
+}
+
 TEST_F(RecordingCut, CopiesCarryOnWhatTheyRead) {
     RecordedCopy copy{"copy", {0, 0, 0}, {3, 0, 0}, {0, 0, 16, 12}, 0, 0};
     recording_.frames[1].commands.emplace_back(copy);
@@ -132,6 +165,31 @@ TEST_F(RecordingCut, CopiesCarryOnWhatTheyRead) {
     std::get<RecordedCopy>(recording_.frames[1].commands.back()).rectangle.width = 15;
     EXPECT_EQ(names_of(frames(6, 7).frames.at(0)),
               (Names{"clear map", "map", "all", "one", "two", "copy", "all", "a", "use", "c", "all"}));
+}
+
+TEST_F(RecordingCut, BlitsOfTheWholeSetItWhole) {
+    traces::RecordedBlit blit;
+    blit.name = "blit";
+    blit.to = {3, 0, 0};
+    blit.source = {0, 0, 8, 6};
+    blit.destination = {0, 0, 16, 12};
+    const auto kept = [&] {
+        recording_.frames[1].commands.emplace_back(blit);
+        const Names names = names_of(frames(6, 7).frames.at(0));
+        recording_.frames[1].commands.pop_back();
+        return names.size();
+    };
+    constexpr std::size_t of_the_map = 2; // what frame 4 did with it
+    const std::size_t whole = kept();
+    EXPECT_EQ(whole, 4U + 5U);
+    blit.scissor = pipeline::PixelRectangle{0, 0, 16, 11};
+    EXPECT_EQ(kept(), whole + of_the_map);
+    blit.scissor.reset();
+    blit.source.x = -1;
+    EXPECT_EQ(kept(), whole + of_the_map);
+    blit.source.x = 0;
+    blit.destination.width = 15;
+    EXPECT_EQ(kept(), whole + of_the_map);
 }
 
 TEST_F(RecordingCut, DrawsOfAFrame) {

@@ -1,6 +1,7 @@
 // The draw trace format: what is written is read, each thing once, and nothing that was not written.
 #include "sim/check.hpp"
 #include "tests/support/program_run.hpp"
+#include "tests/support/recordings.hpp"
 #include "tests/support/trace_files.hpp"
 #include "traces/rtrace/chunk_reader.hpp"
 #include "traces/trace_text.hpp"
@@ -88,6 +89,24 @@ TEST_F(Rtrace, EqualBytesAreStoredOnce) {
     const auto before = std::filesystem::file_size(file);
     more.scene.resources->buffers.push_back(more.scene.resources->buffers.front());
     EXPECT_LT(std::filesystem::file_size(write(more)), before + 40); // a name and a hash, compressed
+}
+
+TEST_F(Rtrace, EqualContentsOfSurfacesAreHeldOnce) {
+    traces::Recording recording = support::quad_recording();
+    traces::RecordedSurface surface;
+    surface.width = surface.height = 8;
+    surface.levels[0] = Bytes(256, std::byte{5});
+    recording.surfaces.insert(recording.surfaces.end(), 2, surface);
+    surface.levels[0] = Bytes(256, std::byte{6});
+    recording.surfaces.push_back(surface);
+    const traces::Trace trace = traces::read_trace(write(support::recorded_trace(std::move(recording))));
+    const std::vector<traces::RecordedSurface>& surfaces = trace.recording->surfaces;
+    const auto contents = [&](std::size_t from_last) -> const pipeline::SharedBytes& {
+        return surfaces[surfaces.size() - from_last].levels[0];
+    };
+    EXPECT_EQ(contents(1), surface.levels[0]);
+    EXPECT_EQ(contents(2).data(), contents(3).data());
+    EXPECT_EQ(contents(2)[255], std::byte{5});
 }
 
 TEST_F(Rtrace, ALargeBufferIsWrittenInFewerBytesAndReadBack) {

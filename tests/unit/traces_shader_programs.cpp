@@ -38,9 +38,12 @@ TEST(ShaderProgramText, DeclaresWhatPragmasAndStructuresSay) {
     EXPECT_EQ(program.order, pipeline::OrderNeed::any);
     EXPECT_EQ(program.peeling, pipeline::Peeling::nearest);
     EXPECT_EQ(program.picture, Picture::nodes);
-    EXPECT_TRUE(program.drains);
+    EXPECT_TRUE(program.drains());
     EXPECT_FALSE(program.needs_colour);
     EXPECT_EQ(program.lines, 16U);
+    EXPECT_EQ(program.line_of(Function::entry), 13U);
+    EXPECT_EQ(program.line_of(Function::drain), 16U);
+    EXPECT_EQ(program.floats(3), 3U * 7U + 5U);
 }
 
 TEST(ShaderProgramText, HasUsualValuesForAllButNameAndEntry) {
@@ -51,7 +54,7 @@ TEST(ShaderProgramText, HasUsualValuesForAllButNameAndEntry) {
     EXPECT_EQ(program.order, pipeline::OrderNeed::primitive_order);
     EXPECT_EQ(program.peeling, pipeline::Peeling::none);
     EXPECT_EQ(program.picture, Picture::layers);
-    EXPECT_FALSE(program.drains);
+    EXPECT_FALSE(program.drains());
     EXPECT_TRUE(program.needs_colour);
 }
 
@@ -63,8 +66,11 @@ TEST(ShaderProgramText, ReadsAndWritesThePixelByRenderTargets) {
           "kbuffer_e[2].z = kbuffer_before[1].y;", "kbuffer_f.z = kbuffer_fragment[0].y;",
           "modify(kbuffer_e, kbuffer_f);", "kbuffer_after[1] = vec4(kbuffer_e[2].r, kbuffer_e[2].z, 0.0, 0.0);"})
         EXPECT_NE(text.find(line), std::string::npos) << line << "\n" << text;
-    // Lines of messages are those of the user's file.
+    // Lines of messages are those of the user's file, or of the function there that a call does not fit.
     EXPECT_NE(text.find("#line 1\n" + smallest), std::string::npos);
+    EXPECT_NE(text.find("#line 5\n    modify("), std::string::npos) << text;
+    EXPECT_NE(task_text(program, Task::entry, 3, 0.5F).find("#line 3\n"), std::string::npos);
+    EXPECT_NE(task_text(program, Task::clear, 3, 0.5F).find("#line 4\n"), std::string::npos);
 }
 
 std::string refused(const std::string& text) {

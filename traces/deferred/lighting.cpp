@@ -3,22 +3,16 @@
 #include "traces/deferred/shadow_filter.hpp"
 #include "traces/deferred/two_class_surface.hpp"
 #include "traces/deferred/world_normals.hpp"
+#include "traces/shader_names.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace traces {
 
 namespace {
-
-using pipeline::LaneIndices;
-using pipeline::QuadPlaces;
-using pipeline::QuadTexels;
-using pipeline::ShaderInput;
-using pipeline::ShaderOutput;
-using pipeline::ShaderShape;
-using pipeline::SurfaceAccess;
 
 /// One light, as it falls on points of the picture.
 class Lighting {
@@ -203,14 +197,15 @@ class TwoClassLight final : public pipeline::Shader {
 /// The light on the surface that is drawn, for additive blending.
 class ForwardLightShader final : public pipeline::Shader {
   public:
-    ForwardLightShader(const pipeline::Frame& frame, const Lighting& lighting, const GBufferOptions& options)
-        : draws_(deferred_draws(frame)),
-          normals_(frame),
-          lighting_(lighting),
-          specular_(options.specular, options.specular_power / 255.0F, 0.0F, 0.0F) {}
+    ForwardLightShader(const pipeline::Frame& frame, SharedMaterials materials, const Lighting& lighting)
+        : draws_(deferred_draws(frame)), normals_(frame), materials_(std::move(materials)), lighting_(lighting) {}
 
     ShaderShape shape() const override {
-        return {.reads = lighting_.maps(), .registers = 8, .colour = pipeline::FragmentColour::unlit, .normal = true};
+        return {.reads = lighting_.maps() + materials_->count(),
+                .registers = materials_->any() ? 10U : 8U,
+                .colour = pipeline::FragmentColour::unlit,
+                .normal = true,
+                .map_texcoords = materials_->any()};
     }
 
     void shade(const ShaderInput& input, SurfaceAccess& surfaces, ShaderOutput& output) const override {
@@ -221,9 +216,12 @@ class ForwardLightShader final : public pipeline::Shader {
         std::array<glm::dvec3, 4> points;
         for (std::size_t i = 0; i < 4; ++i) points[i] = lighting_.place(at.x[i], at.y[i], input.depth[i]);
         const auto arriving = lighting_.through_shadows(points, input.pixels, surfaces, 0);
-        const auto normals = normals_.codes(input, draw);
+        const MaterialReads::Quad material =
+            materials_->read(input, surfaces, lighting_.maps(), MaterialReads::normals | MaterialReads::shine);
+        const auto normals = normals_.codes(material.normals, input.front, draw);
         for (std::size_t i = 0; i < 4; ++i) {
-            const glm::vec4 light = lighting_.reflected(points[i], normals[i], specular_, arriving[i]);
+            const glm::vec4 specular(material.shine[i].x, material.shine[i].y / 255.0F, 0.0F, 0.0F);
+            const glm::vec4 light = lighting_.reflected(points[i], normals[i], specular, arriving[i]);
             output.colours[0][i] = glm::vec4(glm::vec3(colours[i]) * glm::vec3(light) + light.a, 0.0F);
         }
     }
@@ -231,8 +229,8 @@ class ForwardLightShader final : public pipeline::Shader {
   private:
     std::vector<DeferredDraw> draws_;
     WorldNormals normals_;
+    SharedMaterials materials_;
     Lighting lighting_;
-    glm::vec4 specular_;
 };
 
 } // namespace
@@ -242,10 +240,10 @@ std::shared_ptr<const pipeline::Shader> light_shader(const pipeline::View& eye, 
     return std::make_shared<const LightShader>(Lighting(eye, light, options));
 }
 
-std::shared_ptr<const pipeline::Shader> forward_light_shader(const pipeline::Frame& frame, const SpotLight& light,
-                                                             const LightOptions& options,
-                                                             const GBufferOptions& surfaces) {
-    return std::make_shared<const ForwardLightShader>(frame, Lighting(frame.view, light, options), surfaces);
+std::shared_ptr<const pipeline::Shader> forward_light_shader(const pipeline::Frame& frame, SharedMaterials materials,
+                                                             const SpotLight& light, const LightOptions& options) {
+    return std::make_shared<const ForwardLightShader>(frame, std::move(materials),
+                                                      Lighting(frame.view, light, options));
 }
 
 std::shared_ptr<const pipeline::Shader> two_class_light_shader(const pipeline::View& eye, const SpotLight& light,

@@ -2,35 +2,31 @@
 
 #include "traces/deferred/composition.hpp"
 #include "traces/deferred/shadow_filter.hpp"
+#include "traces/shader_names.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace traces {
 
 namespace {
 
-using pipeline::QuadPlaces;
-using pipeline::QuadTexels;
-using pipeline::ShaderInput;
-using pipeline::ShaderOutput;
-using pipeline::ShaderShape;
-using pipeline::SurfaceAccess;
-
 constexpr float behind_eps = 1e-6F; ///< equal depths of two passes are one surface
 
 class GBufferShader final : public pipeline::Shader {
   public:
-    GBufferShader(const pipeline::Frame& frame, const GBufferOptions& options)
-        : draws_(deferred_draws(frame)), normals_(frame), options_(options) {}
+    GBufferShader(const pipeline::Frame& frame, SharedMaterials materials, Layer layer)
+        : draws_(deferred_draws(frame)), normals_(frame), materials_(std::move(materials)), layer_(layer) {}
 
     ShaderShape shape() const override {
         return {.outputs = 4,
-                .reads = options_.layer == Layer::behind ? 1U : 0U,
-                .registers = 6,
+                .reads = first_map() + materials_->count(),
+                .registers = materials_->any() ? 8U : 6U,
                 .colour = pipeline::FragmentColour::unlit,
-                .normal = true};
+                .normal = true,
+                .map_texcoords = materials_->any()};
     }
 
     void shade(const ShaderInput& input, SurfaceAccess& surfaces, ShaderOutput& output) const override {
@@ -38,17 +34,23 @@ class GBufferShader final : public pipeline::Shader {
         surfaces.issue(2 + 3 + 1 + 2, input.pixels); // test of opacity, normal to the world, to [0,1], constants
         output.colours[0] = with_opacity(input.colour, draw);
         const unsigned transparent = transparent_pixels(output.colours[0]);
-        if (options_.layer == Layer::interlaced) output.alive &= ~(transparent & even_rows);
-        if (options_.layer == Layer::behind) keep_behind(input, transparent, surfaces, output);
-        const auto normals = normals_.codes(input, draw);
+        if (layer_ == Layer::interlaced) output.alive &= ~(transparent & even_rows);
+        if (layer_ == Layer::behind) keep_behind(input, transparent, surfaces, output);
+        const MaterialReads::Quad material = materials_->read(
+            input, surfaces, first_map(), MaterialReads::normals | MaterialReads::shine | MaterialReads::emission);
+        if (materials_->glows()) surfaces.issue(slots_to_pack_emission, input.pixels);
+        const auto normals = normals_.codes(material.normals, input.front, draw);
         for (std::size_t i = 0; i < 4; ++i) {
             output.colours[1][i] = glm::vec4(normals[i], 0.0F);
-            output.colours[2][i] = {options_.specular, options_.specular_power / 255.0F, 0.0F, 0.0F};
+            const glm::vec2 glow = emission_channels(material.emission[i]);
+            output.colours[2][i] = {material.shine[i].x, material.shine[i].y / 255.0F, glow.x, glow.y};
             output.colours[3][i].r = input.depth[i];
         }
     }
 
   private:
+    std::uint32_t first_map() const { return layer_ == Layer::behind ? 1 : 0; }
+
     static void keep_behind(const ShaderInput& input, unsigned transparent, SurfaceAccess& surfaces,
                             ShaderOutput& output) {
         const QuadPlaces at(input);
@@ -61,18 +63,28 @@ class GBufferShader final : public pipeline::Shader {
 
     std::vector<DeferredDraw> draws_;
     WorldNormals normals_;
-    GBufferOptions options_;
+    SharedMaterials materials_;
+    Layer layer_;
 };
 
-/// What forward rendering begins with: the ambient share of the colours, normals and, if asked for, depths.
+/// What forward rendering begins with: the ambient share of the colours and what surfaces send out, normals and, if
+/// asked for, depths.
 class AmbientShader final : public pipeline::Shader {
   public:
-    AmbientShader(const pipeline::Frame& frame, float ambient, bool depths)
-        : draws_(deferred_draws(frame)), normals_(frame), ambient_(ambient), depths_(depths) {}
+    AmbientShader(const pipeline::Frame& frame, SharedMaterials materials, float ambient, bool depths)
+        : draws_(deferred_draws(frame)),
+          normals_(frame),
+          materials_(std::move(materials)),
+          ambient_(ambient),
+          depths_(depths) {}
 
     ShaderShape shape() const override {
-        return {
-            .outputs = depths_ ? 3U : 2U, .registers = 5, .colour = pipeline::FragmentColour::unlit, .normal = true};
+        return {.outputs = depths_ ? 3U : 2U,
+                .reads = materials_->count(),
+                .registers = materials_->any() ? 7U : 5U,
+                .colour = pipeline::FragmentColour::unlit,
+                .normal = true,
+                .map_texcoords = materials_->any()};
     }
 
     void shade(const ShaderInput& input, SurfaceAccess& surfaces, ShaderOutput& output) const override {
@@ -80,9 +92,12 @@ class AmbientShader final : public pipeline::Shader {
         const DeferredDraw& draw = draws_[input.draw];
         const QuadTexels colours = with_opacity(input.colour, draw);
         output.alive &= ~(transparent_pixels(colours) & even_rows);
-        const auto normals = normals_.codes(input, draw);
+        const MaterialReads::Quad material =
+            materials_->read(input, surfaces, 0, MaterialReads::normals | MaterialReads::emission);
+        if (materials_->glows()) surfaces.issue(1, input.pixels);
+        const auto normals = normals_.codes(material.normals, input.front, draw);
         for (std::size_t i = 0; i < 4; ++i) {
-            output.colours[0][i] = glm::vec4(glm::vec3(colours[i]) * ambient_, colours[i].a);
+            output.colours[0][i] = glm::vec4(glm::vec3(colours[i]) * ambient_ + material.emission[i], colours[i].a);
             output.colours[1][i] = glm::vec4(normals[i], 0.0F);
             output.colours[2][i].r = input.depth[i];
         }
@@ -91,6 +106,7 @@ class AmbientShader final : public pipeline::Shader {
   private:
     std::vector<DeferredDraw> draws_;
     WorldNormals normals_;
+    SharedMaterials materials_;
     float ambient_;
     bool depths_;
 };
@@ -123,10 +139,7 @@ class InterlacedComposition final : public Composition {
     InterlacedComposition(const pipeline::View& eye, const CompositionOptions& options, Interlaced what)
         : Composition(eye, options), what_(what), normals_(what == Interlaced::deferred ? 2 : 1) {}
 
-    ShaderShape shape() const override {
-        const std::uint32_t refracting = what_ == Interlaced::forward ? 1 : 2;
-        return {.reads = normals_ + (refracts() ? refracting : 0), .registers = 6};
-    }
+    ShaderShape shape() const override { return {.reads = specular() + (glows() ? 1U : 0U), .registers = 6}; }
 
     void shade(const ShaderInput& input, SurfaceAccess& surfaces, ShaderOutput& output) const override {
         surfaces.issue(slots(), input.pixels);
@@ -149,15 +162,23 @@ class InterlacedComposition final : public Composition {
             front_light = surfaces.fetch(1, front.x, front.y, input.pixels);
             behind_light = surfaces.fetch(1, behind.x, behind.y, input.pixels);
         }
+        const QuadColours front_glow = glow_at(specular(), front, input.pixels, surfaces);
+        const QuadColours behind_glow = glow_at(specular(), behind, input.pixels, surfaces);
         for (std::size_t i = 0; i < 4; ++i) {
-            glm::vec3 colour = lit(front_colour[i], front_light[i]);
+            glm::vec3 colour = lit(front_colour[i], front_light[i]) + front_glow[i];
             if (here[i].a != there[i].a)
-                colour = laid_over(lit(behind_colour[i], behind_light[i]), colour, front_colour[i].a);
+                colour = laid_over(lit(behind_colour[i], behind_light[i]) + behind_glow[i], colour, front_colour[i].a);
             output.colours[0][i] = glm::vec4(colour, 1.0F);
         }
     }
 
   private:
+    /// The slot behind all others.
+    std::uint32_t specular() const {
+        const std::uint32_t refracting = what_ == Interlaced::forward ? 1 : 2;
+        return normals_ + (refracts() ? refracting : 0);
+    }
+
     static QuadPlaces one_above(QuadPlaces places) {
         for (std::int32_t& y : places.y) y = std::max(y - 1, 0);
         return places;
@@ -202,36 +223,45 @@ class PeeledComposition final : public Composition {
   public:
     using Composition::Composition;
 
-    ShaderShape shape() const override { return {.reads = 7, .registers = 6}; }
+    ShaderShape shape() const override { return {.reads = glows() ? 9U : 7U, .registers = 6}; }
 
     void shade(const ShaderInput& input, SurfaceAccess& surfaces, ShaderOutput& output) const override {
         surfaces.issue(slots(), input.pixels);
         const QuadPlaces own(input);
         const QuadTexels front = surfaces.fetch(0, own.x, own.y, input.pixels);
         const QuadTexels front_light = surfaces.fetch(1, own.x, own.y, input.pixels);
-        QuadTexels behind = surfaces.fetch(4, own.x, own.y, input.pixels);
-        QuadTexels behind_light = surfaces.fetch(5, own.x, own.y, input.pixels);
-        if (refracts()) look_through(own, input.pixels, behind, behind_light, surfaces);
+        const QuadColours front_glow = glow_at(7, own, input.pixels, surfaces);
+        Behind behind{surfaces.fetch(4, own.x, own.y, input.pixels), surfaces.fetch(5, own.x, own.y, input.pixels),
+                      glow_at(8, own, input.pixels, surfaces)};
+        if (refracts()) look_through(own, input.pixels, behind, surfaces);
         for (std::size_t i = 0; i < 4; ++i) {
-            glm::vec3 colour = lit(front[i], front_light[i]);
-            if (is_transparent(front[i].a)) colour = laid_over(lit(behind[i], behind_light[i]), colour, front[i].a);
+            glm::vec3 colour = lit(front[i], front_light[i]) + front_glow[i];
+            if (is_transparent(front[i].a))
+                colour = laid_over(lit(behind.colour[i], behind.light[i]) + behind.glow[i], colour, front[i].a);
             output.colours[0][i] = glm::vec4(colour, 1.0F);
         }
     }
 
   private:
-    void look_through(const QuadPlaces& own, unsigned pixels, QuadTexels& behind, QuadTexels& behind_light,
-                      SurfaceAccess& surfaces) const {
+    struct Behind {
+        QuadTexels colour, light;
+        QuadColours glow;
+    };
+
+    void look_through(const QuadPlaces& own, unsigned pixels, Behind& behind, SurfaceAccess& surfaces) const {
         const QuadPlaces through = refracted(own, surfaces.fetch(2, own.x, own.y, pixels));
         const auto at = [&](std::uint32_t slot) { return surfaces.fetch(slot, through.x, through.y, pixels); };
         const QuadTexels pane = surfaces.fetch(3, own.x, own.y, pixels);
         const QuadTexels nearest = at(0), nearest_light = at(1), nearest_depth = at(3);
         const QuadTexels second = at(4), second_light = at(5), second_depth = at(6);
+        const QuadColours nearest_glow = glow_at(7, through, pixels, surfaces);
+        const QuadColours second_glow = glow_at(8, through, pixels, surfaces);
         for (std::size_t i = 0; i < 4; ++i) {
             const bool opaque = !is_transparent(nearest[i].a);
             if ((opaque ? nearest_depth : second_depth)[i].r < pane[i].r) continue;
-            behind[i] = (opaque ? nearest : second)[i];
-            behind_light[i] = (opaque ? nearest_light : second_light)[i];
+            behind.colour[i] = (opaque ? nearest : second)[i];
+            behind.light[i] = (opaque ? nearest_light : second_light)[i];
+            behind.glow[i] = (opaque ? nearest_glow : second_glow)[i];
         }
     }
 };
@@ -248,12 +278,14 @@ std::vector<DeferredDraw> deferred_draws(const pipeline::Frame& frame) {
     return draws;
 }
 
-std::shared_ptr<const pipeline::Shader> gbuffer_shader(const pipeline::Frame& frame, const GBufferOptions& options) {
-    return std::make_shared<const GBufferShader>(frame, options);
+std::shared_ptr<const pipeline::Shader> gbuffer_shader(const pipeline::Frame& frame, SharedMaterials materials,
+                                                       Layer layer) {
+    return std::make_shared<const GBufferShader>(frame, std::move(materials), layer);
 }
 
-std::shared_ptr<const pipeline::Shader> ambient_shader(const pipeline::Frame& frame, float ambient, bool depths) {
-    return std::make_shared<const AmbientShader>(frame, ambient, depths);
+std::shared_ptr<const pipeline::Shader> ambient_shader(const pipeline::Frame& frame, SharedMaterials materials,
+                                                       float ambient, bool depths) {
+    return std::make_shared<const AmbientShader>(frame, std::move(materials), ambient, depths);
 }
 
 std::shared_ptr<const pipeline::Shader> shadow_shader(const pipeline::Frame& frame, Shadows shadows) {

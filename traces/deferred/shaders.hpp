@@ -7,6 +7,7 @@
 #pragma once
 
 #include "pipeline/frame.hpp"
+#include "traces/deferred/material_reads.hpp"
 #include "traces/deferred/spot_lights.hpp"
 
 #include <memory>
@@ -20,8 +21,9 @@ struct DeferredDraw {
     bool double_sided = false; ///< its back faces are lit as well, from behind
     bool mirrored = false;     ///< its front faces are clockwise
 
-    /// Its normals are, on triangles that face the screen like that.
-    bool turned_over(bool front) const { return double_sided && front == mirrored; }
+    /// Its normals are, on triangles that face the screen like that: as matrices take them along they point inwards in
+    /// a mirrored draw, and those of back faces are lit from behind.
+    bool turned_over(bool front) const { return mirrored != (double_sided && front == mirrored); }
 };
 std::vector<DeferredDraw> deferred_draws(const pipeline::Frame& frame);
 
@@ -32,17 +34,19 @@ enum class Layer : std::uint8_t {
     behind      ///< opaque ones behind the depth that its only surface holds
 };
 
-struct GBufferOptions {
-    Layer layer = Layer::interlaced;
-    float specular = 0.3F;        ///< of all materials
-    float specular_power = 32.0F; ///< 0 to 255
-};
-/// Outputs: colour and opacity; normal in the world, from [-1,1] to [0,1]; specular intensity and power / 255; window
-/// depth.
-std::shared_ptr<const pipeline::Shader> gbuffer_shader(const pipeline::Frame& frame, const GBufferOptions& options);
+/// What shaders of surfaces read of their materials; behind the surfaces that are named for a shader it reads
+/// MaterialReads::surfaces().
+using SharedMaterials = std::shared_ptr<const MaterialReads>;
 
-/// Outputs: the ambient share of the colour, and opacity; normal; window depth, if asked for. Rows as `interlaced`.
-std::shared_ptr<const pipeline::Shader> ambient_shader(const pipeline::Frame& frame, float ambient, bool depths);
+/// Outputs: colour and opacity; normal in the world, from [-1,1] to [0,1]; specular intensity, power / 255, and light
+/// that it sends out (emission.hpp); window depth.
+std::shared_ptr<const pipeline::Shader> gbuffer_shader(const pipeline::Frame& frame, SharedMaterials materials,
+                                                       Layer layer);
+
+/// Outputs: the ambient share of the colour with what the surface sends out, and opacity; normal; window depth, if
+/// asked for. Rows as `interlaced`.
+std::shared_ptr<const pipeline::Shader> ambient_shader(const pipeline::Frame& frame, SharedMaterials materials,
+                                                       float ambient, bool depths);
 
 enum class Shadows : std::uint8_t { none, opaque, transparent };
 
@@ -68,17 +72,17 @@ std::shared_ptr<const pipeline::Shader> light_shader(const pipeline::View& eye, 
                                                      const LightOptions& options);
 
 /// The same on the surfaces that are drawn, in their colour and for additive blending. Reads the shadow map.
-std::shared_ptr<const pipeline::Shader> forward_light_shader(const pipeline::Frame& frame, const SpotLight& light,
-                                                             const LightOptions& options,
-                                                             const GBufferOptions& surfaces);
+std::shared_ptr<const pipeline::Shader> forward_light_shader(const pipeline::Frame& frame, SharedMaterials materials,
+                                                             const SpotLight& light, const LightOptions& options);
 
 struct CompositionOptions {
     bool refraction = true;
     double coefficient = 0.03; ///< of the picture's height: the offset of a normal across the view
+    bool glowing = false;      ///< surfaces send out light; forward rendering has added it before
 };
 /// Whose rows a composition takes apart.
 enum class Interlaced : std::uint8_t {
-    deferred,       ///< colours, light and, with refraction, normals and depths
+    deferred,       ///< colours, light, with refraction normals and depths, and specular where surfaces glow
     forward,        ///< lit colours and, with refraction, normals: panes are known by their opacity alone
     forward_depths, ///< lit colours and, with refraction, normals and depths
 };
@@ -87,7 +91,7 @@ std::shared_ptr<const pipeline::Shader> interlaced_composition(const pipeline::V
                                                                const CompositionOptions& options,
                                                                Interlaced what = Interlaced::deferred);
 /// Lays the nearest surfaces over those behind. Reads colours, light, normals and depths of the nearest, then colours,
-/// light and depths of the others.
+/// light and depths of the others, and where surfaces glow specular of the nearest and of the others.
 std::shared_ptr<const pipeline::Shader> peeled_composition(const pipeline::View& eye,
                                                            const CompositionOptions& options);
 
@@ -95,7 +99,7 @@ std::shared_ptr<const pipeline::Shader> peeled_composition(const pipeline::View&
 
 /// Output: the words of an entry.
 std::shared_ptr<const pipeline::Shader> two_class_gbuffer_shader(const pipeline::Frame& frame,
-                                                                 const GBufferOptions& options);
+                                                                 SharedMaterials materials);
 /// Output: the words of an entry, with colour and opacity alone.
 std::shared_ptr<const pipeline::Shader> two_class_shadow_shader(const pipeline::Frame& frame);
 /// Reads the k-buffer and the shadow map; outputs: light on transparent surfaces, and on opaque ones.

@@ -24,9 +24,12 @@ enum Channel : std::size_t { opaque_channel, transparent_channel, reflection_cha
 /// Colours of opaque fragments. It reads normals for the rays, which shade what the frame's shaders read.
 class OpaqueShader final : public pipeline::Shader {
   public:
-    explicit OpaqueShader(const pipeline::Frame& frame) : draws_(deferred_draws(frame)) {}
+    OpaqueShader(const pipeline::Frame& frame, bool map_texcoords)
+        : draws_(deferred_draws(frame)), map_texcoords_(map_texcoords) {}
 
-    pipeline::ShaderShape shape() const override { return {.colour = pipeline::FragmentColour::unlit, .normal = true}; }
+    pipeline::ShaderShape shape() const override {
+        return {.colour = pipeline::FragmentColour::unlit, .normal = true, .map_texcoords = map_texcoords_};
+    }
     void shade(const pipeline::ShaderInput& input, pipeline::SurfaceAccess&,
                pipeline::ShaderOutput& output) const override {
         output.colours[0] = with_opacity(input.colour, draws_[input.draw]);
@@ -35,17 +38,17 @@ class OpaqueShader final : public pipeline::Shader {
 
   private:
     std::vector<DeferredDraw> draws_;
+    bool map_texcoords_;
 };
 
 /// The surfaces of the scene alone, without volumes of lights; rasterized, its depths are those of opaque ones.
-pipeline::Frame frame_of_surfaces(const Scene& scene, const pipeline::Frame& of_workload) {
-    pipeline::Frame frame = frame_of(scene, of_workload.view);
+pipeline::Frame frame_of_surfaces(pipeline::Frame frame, const pipeline::Frame& of_workload, bool map_texcoords) {
     frame.workload = of_workload.workload;
     frame.background = of_workload.background;
     frame.depth_format = pipeline::SurfaceFormat::d32f;
     ShadedPass pass;
     pass.name = "opaque surfaces";
-    pass.shader = std::make_shared<const OpaqueShader>(frame);
+    pass.shader = std::make_shared<const OpaqueShader>(frame, map_texcoords);
     pass.targets = {colour_surface};
     pass.depth = depth_surface;
     pass.draws.resize(frame.draws.size());
@@ -71,13 +74,18 @@ std::vector<std::optional<double>> opaque_distances(const pipeline::Frame& frame
 
 class TracedPicture {
   public:
-    TracedPicture(const pipeline::Frame& surfaces, DeferredTruth options)
+    TracedPicture(const pipeline::Frame& surfaces, DeferredTruth options, SharedMaterials materials)
         : options_(std::move(options)),
+          materials_(std::move(materials)),
+          maps_(materials_->surfaces()),
+          slots_(materials_->count()),
           draws_(deferred_draws(surfaces)),
           background_(surfaces.background),
           to_eye_(glm::dmat4(surfaces.view.view)),
           eye_(glm::inverse(glm::dmat4(surfaces.view.view))[3]),
-          size_(surfaces.view.width, surfaces.view.height) {}
+          size_(surfaces.view.width, surfaces.view.height) {
+        std::iota(slots_.begin(), slots_.end(), 0U);
+    }
 
     bool is_opaque(const FrameSurface& surface) const { return !is_transparent(opacity(surface)); }
 
@@ -100,13 +108,36 @@ class TracedPicture {
     }
 
     float opacity(const FrameSurface& surface) const { return surface.colour.a * draws_[surface.draw].opacity; }
-    glm::dvec3 normal(const FrameSurface& surface) const {
-        return draws_[surface.draw].turned_over(surface.front) ? -surface.normal : surface.normal;
+
+    struct Reflecting {
+        glm::dvec3 normal{0.0};
+        double specular = 0.0, power = 0.0;
+        glm::dvec3 emission{0.0};
+    };
+    Reflecting material_of(const FrameSurface& surface) const {
+        Reflecting of{surface.normal, options_.specular, options_.specular_power};
+        if (materials_->stated(surface.draw)) {
+            pipeline::ShaderInput input;
+            input.pixels = 1U << surface.lane;
+            input.draw = surface.draw;
+            input.normal[surface.lane] = glm::vec4(glm::vec3(surface.normal), 0.0F);
+            input.texcoords = surface.texcoords;
+            input.tangent = surface.tangent;
+            pipeline::SurfaceAccess access(maps_, slots_);
+            const MaterialReads::Quad quad = materials_->read(
+                input, access, 0, MaterialReads::normals | MaterialReads::shine | MaterialReads::emission);
+            if (materials_->tilts(surface.draw)) of.normal = glm::dvec3(glm::vec3(quad.normals[surface.lane]));
+            of.specular = static_cast<double>(quad.shine[surface.lane].x);
+            of.power = static_cast<double>(quad.shine[surface.lane].y);
+            of.emission = glm::dvec3(quad.emission[surface.lane]);
+        }
+        if (draws_[surface.draw].turned_over(surface.front)) of.normal = -of.normal;
+        return of;
     }
 
     glm::dvec3 lit(Rays& rays, const FrameSurface& surface, const glm::ivec2& at) const {
-        const ReflectingPoint point{place(rays, surface, at), normal(surface), options_.specular,
-                                    options_.specular_power};
+        const Reflecting of = material_of(surface);
+        const ReflectingPoint point{place(rays, surface, at), of.normal, of.specular, of.power};
         glm::dvec4 light(glm::dvec3(options_.ambient), 0.0);
         for (const SpotLight& spot : options_.lights) {
             const auto from = [&](const glm::dvec3& arriving) {
@@ -114,7 +145,7 @@ class TracedPicture {
             };
             if (from(spot.colour) != glm::dvec4(0.0)) light += from(past_shadows(rays, spot, point.place));
         }
-        return lit_by(light, glm::dvec3(surface.colour));
+        return lit_by(light, glm::dvec3(surface.colour)) + of.emission;
     }
 
     /// Of its colour, what arrives. The ray goes as the light looks, so that the same faces are culled as in its map.
@@ -153,7 +184,7 @@ class TracedPicture {
         };
         if (!options_.composition.refraction) return colour_of(seen, at);
         const double offset = options_.composition.coefficient * size_.y;
-        const glm::ivec2 through = seen_through(at, to_eye_ * normal(pane), offset, size_);
+        const glm::ivec2 through = seen_through(at, to_eye_ * material_of(pane).normal, offset, size_);
         PixelSurfaces aside;
         rays.surfaces(static_cast<std::uint32_t>(through.x), static_cast<std::uint32_t>(through.y), aside);
         if (aside.has_opaque && aside.opaque.distance < pane.distance) return colour_of(seen, at);
@@ -179,6 +210,9 @@ class TracedPicture {
     }
 
     DeferredTruth options_;
+    SharedMaterials materials_;
+    pipeline::SurfaceStore maps_;
+    std::vector<pipeline::SurfaceId> slots_;
     std::vector<DeferredDraw> draws_;
     glm::dvec3 background_;
     glm::dmat3 to_eye_;
@@ -189,8 +223,13 @@ class TracedPicture {
 } // namespace
 
 TruthMethod deferred_truth(const Scene& scene, const pipeline::Frame& frame, DeferredTruth options) {
-    const auto surfaces = std::make_shared<const pipeline::Frame>(frame_of_surfaces(scene, frame));
-    const auto traced = std::make_shared<const TracedPicture>(*surfaces, std::move(options));
+    pipeline::Frame drawn = frame_of(scene, frame.view);
+    auto materials = std::make_shared<const MaterialReads>(
+        drawn, CommonShine{static_cast<float>(options.specular), static_cast<float>(options.specular_power)},
+        options.maps);
+    const auto surfaces =
+        std::make_shared<const pipeline::Frame>(frame_of_surfaces(std::move(drawn), frame, materials->any()));
+    const auto traced = std::make_shared<const TracedPicture>(*surfaces, std::move(options), std::move(materials));
     TruthMethod method;
     method.frame = surfaces;
     method.channels = {

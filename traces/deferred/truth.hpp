@@ -1,8 +1,9 @@
 // The picture of deferred shading as rays have it: what every method of it approaches.
 //
 // Surfaces, light, shadows, refraction and composition are those of the methods (specification 003, B1, B6, B8), by the
-// same formulas and in doubles, for the first opaque surface along a ray and the first transparent one in front of it.
-// What is left of the methods is what they lose: rows of a G-buffer, texels of a shadow map with their biases, bits. Of
+// same formulas and in doubles (maps of materials by the same code, in their own level for the pixel's rays and in
+// their finest for others), for the first opaque surface along a ray and the first transparent one in front of it. What
+// is left of the methods is what they lose: rows of a G-buffer, texels of a shadow map with their biases, bits. Of
 // light that adds up to more than 1 a screen shows 1: the picture ends there, sums of light do not.
 //
 // Not modelled: refraction by Snell's law. `total_reflection` marks where it would show something else altogether.
@@ -30,8 +31,9 @@ struct DeferredTruth {
     CompositionOptions composition;
     double intensity = 1.0;
     double ambient = 0.1;
-    double specular = 0.3;
+    double specular = 0.3; ///< of materials that state nothing, like the power
     double specular_power = 32.0;
+    bool maps = true; ///< materials state what they do; see MaterialReads
 };
 
 /// `frame` is that of the workload. Channels: distances of the first opaque surface and, where one is in front of it,

@@ -2,42 +2,46 @@
 // lighting.cpp. Source: specification 003, section 5 (KG, KS).
 #include "traces/deferred/composition.hpp"
 #include "traces/deferred/two_class_surface.hpp"
+#include "traces/shader_names.hpp"
+
+#include <utility>
 
 namespace traces {
 
 namespace {
 
-using pipeline::QuadPlaces;
-using pipeline::QuadTexels;
-using pipeline::ShaderInput;
-using pipeline::ShaderOutput;
-using pipeline::ShaderShape;
-using pipeline::SurfaceAccess;
-
 class TwoClassGBuffer final : public pipeline::Shader {
   public:
-    TwoClassGBuffer(const pipeline::Frame& frame, const GBufferOptions& options)
-        : draws_(deferred_draws(frame)),
-          normals_(frame),
-          specular_(options.specular, options.specular_power / 255.0F, 0.0F, 0.0F) {}
+    TwoClassGBuffer(const pipeline::Frame& frame, SharedMaterials materials)
+        : draws_(deferred_draws(frame)), normals_(frame), materials_(std::move(materials)) {}
 
     ShaderShape shape() const override {
-        return {.registers = 6, .colour = pipeline::FragmentColour::unlit, .normal = true};
+        return {.reads = materials_->count(),
+                .registers = materials_->any() ? 8U : 6U,
+                .colour = pipeline::FragmentColour::unlit,
+                .normal = true,
+                .map_texcoords = materials_->any()};
     }
 
     void shade(const ShaderInput& input, SurfaceAccess& surfaces, ShaderOutput& output) const override {
         surfaces.issue(3 + 1 + 2 + TwoClassSurface::slots_to_pack, input.pixels); // normal, to [0,1], constants
         const DeferredDraw& draw = draws_[input.draw];
         const QuadTexels colours = with_opacity(input.colour, draw);
-        const auto normals = normals_.codes(input, draw);
-        for (std::size_t i = 0; i < 4; ++i)
-            output.colours[0][i] = TwoClassSurface{colours[i], glm::vec4(normals[i], 0.0F), specular_}.words();
+        const MaterialReads::Quad material = materials_->read(
+            input, surfaces, 0, MaterialReads::normals | MaterialReads::shine | MaterialReads::emission);
+        if (materials_->glows()) surfaces.issue(slots_to_pack_emission, input.pixels);
+        const auto normals = normals_.codes(material.normals, input.front, draw);
+        for (std::size_t i = 0; i < 4; ++i) {
+            const glm::vec4 specular(material.shine[i].x, material.shine[i].y / 255.0F, 0.0F, 0.0F);
+            output.colours[0][i] =
+                TwoClassSurface{colours[i], glm::vec4(normals[i], 0.0F), specular, material.emission[i]}.words();
+        }
     }
 
   private:
     std::vector<DeferredDraw> draws_;
     WorldNormals normals_;
-    glm::vec4 specular_;
+    SharedMaterials materials_;
 };
 
 class TwoClassShadow final : public pipeline::Shader {
@@ -69,11 +73,12 @@ class TwoClassComposition final : public Composition {
         const QuadTexels front_light = surfaces.fetch(1, own.x, own.y, input.pixels);
         QuadTexels behind_light = surfaces.fetch(2, own.x, own.y, input.pixels);
         if (refracts()) look_through(own, input.pixels, seen, behind_light, surfaces);
+        if (glows()) surfaces.issue(2 * (slots_to_unpack_emission + 1), input.pixels); // and a sum each
         for (std::size_t i = 0; i < 4; ++i) {
             const TwoClassSurface &front = seen.transparent[i], &behind = seen.opaque[i];
-            glm::vec3 colour = lit(behind.colour, behind_light[i]);
+            glm::vec3 colour = lit(behind.colour, behind_light[i]) + behind.emission;
             if (is_transparent(front.colour.a))
-                colour = laid_over(colour, lit(front.colour, front_light[i]), front.colour.a);
+                colour = laid_over(colour, lit(front.colour, front_light[i]) + front.emission, front.colour.a);
             output.colours[0][i] = glm::vec4(colour, 1.0F);
         }
     }
@@ -99,8 +104,8 @@ class TwoClassComposition final : public Composition {
 } // namespace
 
 std::shared_ptr<const pipeline::Shader> two_class_gbuffer_shader(const pipeline::Frame& frame,
-                                                                 const GBufferOptions& options) {
-    return std::make_shared<const TwoClassGBuffer>(frame, options);
+                                                                 SharedMaterials materials) {
+    return std::make_shared<const TwoClassGBuffer>(frame, std::move(materials));
 }
 
 std::shared_ptr<const pipeline::Shader> two_class_shadow_shader(const pipeline::Frame& frame) {

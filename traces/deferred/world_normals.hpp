@@ -30,10 +30,11 @@ class WorldNormals {
   public:
     explicit WorldNormals(const pipeline::Frame& frame) : to_world_(glm::transpose(glm::mat3(frame.view.view))) {}
 
-    std::array<glm::vec3, 4> codes(const pipeline::ShaderInput& input, const DeferredDraw& draw) const {
-        const float side = draw.turned_over(input.front) ? -0.5F : 0.5F;
+    /// `normals`: of the quad, in eye space.
+    std::array<glm::vec3, 4> codes(const pipeline::QuadTexels& normals, bool front, const DeferredDraw& draw) const {
+        const float side = draw.turned_over(front) ? -0.5F : 0.5F;
         std::array<glm::vec3, 4> codes;
-        for (std::size_t i = 0; i < 4; ++i) codes[i] = to_world_ * glm::vec3(input.normal[i]) * side + 0.5F;
+        for (std::size_t i = 0; i < 4; ++i) codes[i] = to_world_ * glm::vec3(normals[i]) * side + 0.5F;
         return codes;
     }
 

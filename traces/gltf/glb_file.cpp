@@ -22,10 +22,6 @@ namespace {
 class CompleteFile {
   public:
     explicit CompleteFile(const fs::path& path) : file_(path) {
-        std::error_code error;
-        const fs::file_status status = fs::status(path, error);
-        if (path.filename().empty() || (fs::exists(status) && !fs::is_regular_file(status)))
-            throw sim::InputError(fmt::format("{}: expected the name of a file to write", path.string()));
         descriptor_ = ::open(file_.temporary().c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
         if (descriptor_ < 0) fail();
     }

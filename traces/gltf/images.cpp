@@ -7,6 +7,9 @@
 #include <cstdint>
 #include <cstring>
 #include <span>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace traces::gltf {
 
@@ -125,21 +128,43 @@ std::string kind_of(Encoded bytes) {
     return {};
 }
 
+/// @param where file and place, for errors
+EncodedImage image_of(std::vector<unsigned char> bytes, const std::string& where) {
+    const Size size = size_in_header(bytes);
+    if (size.width < 1 || size.height < 1)
+        throw sim::InputError(fmt::format("{}: expected PNG, JPEG or WebP data{}", where, kind_of(bytes)));
+    if (size.width > largest_image || size.height > largest_image)
+        throw sim::InputError(fmt::format("{0}: expected at most {1}x{1} texels, got {2}x{3}", where, largest_image,
+                                          size.width, size.height));
+    return {size.width, size.height, [kept = std::move(bytes), size, where] {
+                return is_webp(kept) ? decode_webp(where, kept, size) : decode_png_or_jpeg(where, kept, size);
+            }};
+}
+
+std::vector<unsigned char> bytes_of_image(const Document& document, int index) {
+    const tinygltf::Image& source = document.at(document.model().images, index, "textures", "image");
+    const Encoded bytes = encoded_bytes(document, source, fmt::format("images[{}]", index));
+    return {bytes.begin(), bytes.end()};
+}
+
+std::string where_of(const Document& document, int index) {
+    return fmt::format("{}: images[{}]", document.name(), index);
+}
+
 } // namespace
 
 EncodedImage encoded_image(const Document& document, int index) {
-    const tinygltf::Image& source = document.at(document.model().images, index, "textures", "image");
-    const std::string place = fmt::format("images[{}]", index);
-    const Encoded bytes = encoded_bytes(document, source, place);
-    const Size size = size_in_header(bytes);
-    document.require(size.width >= 1 && size.height >= 1, place, "PNG, JPEG or WebP data{}", kind_of(bytes));
-    document.require(size.width <= largest_image && size.height <= largest_image, place,
-                     "at most {0}x{0} texels, got {1}x{2}", largest_image, size.width, size.height);
-    return {size.width, size.height,
-            [kept = std::vector<unsigned char>(bytes.begin(), bytes.end()), size,
-             where = fmt::format("{}: {}", document.name(), place)] {
-                return is_webp(kept) ? decode_webp(where, kept, size) : decode_png_or_jpeg(where, kept, size);
-            }};
+    return image_of(bytes_of_image(document, index), where_of(document, index));
+}
+
+std::function<EncodedImage()> late_image(const Document& document, int index) {
+    try {
+        return [bytes = bytes_of_image(document, index), where = where_of(document, index)] {
+            return image_of(bytes, where);
+        };
+    } catch (const sim::InputError& error) {
+        return [fault = std::string(error.what())]() -> EncodedImage { throw sim::InputError(fault); };
+    }
 }
 
 } // namespace traces::gltf

@@ -18,4 +18,7 @@ struct EncodedImage {
 /// more than 16384 texels along a side.
 EncodedImage encoded_image(const Document& document, int image);
 
+/// The same for later, when the document may be gone: what is wrong with the image is thrown then.
+std::function<EncodedImage()> late_image(const Document& document, int image);
+
 } // namespace traces::gltf

@@ -117,7 +117,8 @@ void note_unread(const json& root, std::vector<std::string>& notes) {
     const json materials = list("materials");
     const auto glowing = std::count_if(materials.begin(), materials.end(), glows);
     if (glowing > 0)
-        notes.push_back(fmt::format("emission ({} of {} materials) is not drawn", glowing, materials.size()));
+        notes.push_back(fmt::format("emission ({} of {} materials) is drawn by workloads that ask for it alone",
+                                    glowing, materials.size()));
 }
 
 } // namespace

@@ -3,6 +3,7 @@
 #include "traces/gltf/images.hpp"
 
 #include <cmath>
+#include <utility>
 
 namespace traces::gltf {
 
@@ -75,11 +76,25 @@ AlphaMode alpha_mode_of(const Document& document, const std::string& mode, std::
     return AlphaMode::opaque;
 }
 
+/// Which set of texture coordinates a texture reads, and how they are transformed.
+template <class Info>
+std::pair<int, glm::mat3> coordinates_of(const Info& info) {
+    const auto* transform = extension(info.extensions, "KHR_texture_transform");
+    if (transform == nullptr) return {info.texCoord, glm::mat3(1.0F)};
+    return {static_cast<int>(number_in(*transform, "texCoord", info.texCoord)), uv_transform(*transform)};
+}
+
+bool is_read_set(Document& document, int set, std::string_view place) {
+    if (set == 0 || set == 1) return true;
+    document.notes.push_back(
+        fmt::format("{}: texture coordinates {} are not read, its texture is left out", place, set));
+    return false;
+}
+
 } // namespace
 
-std::int32_t Materials::use_texture(int index, std::string_view place) {
-    const auto& model = document_.model();
-    const auto& source = document_.at(model.textures, index, place, "texture");
+int Materials::image_of(int index, std::string_view place) {
+    const auto& source = document_.at(document_.model().textures, index, place, "texture");
     int image = source.source;
     if (const auto* webp = extension(source.extensions, "EXT_texture_webp"); webp != nullptr && webp->Has("source"))
         image = webp->Get("source").GetNumberAsInt();
@@ -87,19 +102,31 @@ std::int32_t Materials::use_texture(int index, std::string_view place) {
         const bool basis = extension(source.extensions, "KHR_texture_basisu") != nullptr;
         document_.notes.push_back(fmt::format("texture {} has no PNG, JPEG or WebP image{} and is left out", index,
                                               basis ? " (KTX2 is not read)" : ""));
-        return -1;
     }
-    const auto [entry, is_new] = textures_.try_emplace({image, source.sampler}, 0);
-    if (!is_new) return entry->second;
+    return image;
+}
+
+Texture Materials::texture_without_texels(int index, std::string_view place) const {
+    const auto& model = document_.model();
+    const auto& source = document_.at(model.textures, index, place, "texture");
     Texture texture;
     texture.name = place_of("texture", static_cast<std::size_t>(index), source.name);
-    if (source.sampler >= 0) {
-        const auto& sampler = document_.at(model.samplers, source.sampler, texture.name, "sampler");
-        texture.wrap_u = wrap_of(sampler.wrapS);
-        texture.wrap_v = wrap_of(sampler.wrapT);
-        texture.min_filter = min_filter_of(sampler.minFilter);
-        if (sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST) texture.mag_filter = Filter::nearest;
-    }
+    if (source.sampler < 0) return texture;
+    const auto& sampler = document_.at(model.samplers, source.sampler, texture.name, "sampler");
+    texture.wrap_u = wrap_of(sampler.wrapS);
+    texture.wrap_v = wrap_of(sampler.wrapT);
+    texture.min_filter = min_filter_of(sampler.minFilter);
+    if (sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST) texture.mag_filter = Filter::nearest;
+    return texture;
+}
+
+std::int32_t Materials::use_texture(int index, std::string_view place) {
+    const int image = image_of(index, place);
+    if (image < 0) return -1;
+    const int sampler = document_.model().textures[static_cast<std::size_t>(index)].sampler;
+    const auto [entry, is_new] = textures_.try_emplace({image, sampler}, 0);
+    if (!is_new) return entry->second;
+    Texture texture = texture_without_texels(index, place);
     EncodedImage encoded = encoded_image(document_, image);
     texture.make_empty_levels(encoded.width, encoded.height);
     texture.decode = std::move(encoded.decode);
@@ -108,19 +135,68 @@ std::int32_t Materials::use_texture(int index, std::string_view place) {
     return entry->second;
 }
 
+// Whoever asks for the texels learns what is wrong with the image; the others do without.
+std::int32_t Materials::use_map(int index, bool srgb, std::string_view place) {
+    const int image = image_of(index, place);
+    if (image < 0) return -1;
+    const int sampler = document_.model().textures[static_cast<std::size_t>(index)].sampler;
+    const auto [entry, is_new] = maps_.try_emplace({image, sampler, srgb}, 0);
+    if (!is_new) return entry->second;
+    pipeline::LateTexture map;
+    map.texture = texture_without_texels(index, place);
+    map.texture.srgb = srgb;
+    map.make = [empty = map.texture, read = late_image(document_, image)] {
+        Texture made = empty;
+        const EncodedImage encoded = read();
+        made.make_empty_levels(encoded.width, encoded.height);
+        made.levels[0].rgba = encoded.decode();
+        made.make_mips();
+        return made;
+    };
+    entry->second = static_cast<std::int32_t>(resources_.maps.size());
+    resources_.maps.push_back(std::move(map));
+    return entry->second;
+}
+
 void Materials::read_texture(Material& material, const tinygltf::TextureInfo& info, std::string_view place) {
-    int set = info.texCoord;
-    if (const auto* transform = extension(info.extensions, "KHR_texture_transform")) {
-        material.uv_transform = uv_transform(*transform);
-        set = static_cast<int>(number_in(*transform, "texCoord", set));
-    }
-    if (set < 0 || set > 1) {
-        document_.notes.push_back(
-            fmt::format("{}: texture coordinates {} are not read, its texture is left out", place, set));
-        return;
-    }
+    const auto [set, transform] = coordinates_of(info);
+    material.uv_transform = transform;
+    if (!is_read_set(document_, set, place)) return;
     material.texcoord = static_cast<std::uint8_t>(set);
     material.base_texture = use_texture(info.index, place);
+}
+
+template <class Info>
+pipeline::MaterialMap Materials::map_of(const Info& info, bool srgb, std::string_view place) {
+    if (info.index < 0) return {};
+    const auto [set, transform] = coordinates_of(info);
+    if (!is_read_set(document_, set, place)) return {};
+    return {use_map(info.index, srgb, place), static_cast<std::uint8_t>(set), transform};
+}
+
+void Materials::read_maps(pipeline::MaterialMaps& maps, const tinygltf::Material& source, std::string_view place) {
+    const auto& base = source.pbrMetallicRoughness;
+    maps.normal = map_of(source.normalTexture, false, place);
+    maps.normal_scale = static_cast<float>(source.normalTexture.scale);
+    maps.roughness = map_of(base.metallicRoughnessTexture, false, place);
+    maps.metallic_factor = static_cast<float>(base.metallicFactor);
+    maps.roughness_factor = static_cast<float>(base.roughnessFactor);
+    maps.emissive = map_of(source.emissiveTexture, true, place);
+    document_.require(source.emissiveFactor.size() == 3, place, "3 numbers in emissiveFactor, got {}",
+                      source.emissiveFactor.size());
+    for (int i = 0; i < 3; ++i)
+        maps.emissive_factor[i] = static_cast<float>(source.emissiveFactor[static_cast<std::size_t>(i)]);
+    const auto* specular = extension(source.extensions, "KHR_materials_specular");
+    if (specular == nullptr) return;
+    maps.specular_factor = static_cast<float>(number_in(*specular, "specularFactor", 1.0));
+    if (!specular->Has("specularTexture") || !specular->Get("specularTexture").IsObject()) return;
+    const tinygltf::Value& texture = specular->Get("specularTexture");
+    tinygltf::TextureInfo info;
+    info.index = static_cast<int>(number_in(texture, "index", -1.0));
+    info.texCoord = static_cast<int>(number_in(texture, "texCoord", 0.0));
+    if (texture.Has("extensions") && texture.Get("extensions").Has("KHR_texture_transform"))
+        info.extensions["KHR_texture_transform"] = texture.Get("extensions").Get("KHR_texture_transform");
+    maps.specular = map_of(info, false, place);
 }
 
 Material Materials::read(const tinygltf::Material& source, std::string_view place) {
@@ -138,6 +214,7 @@ Material Materials::read(const tinygltf::Material& source, std::string_view plac
     if (const auto* transmission = extension(source.extensions, "KHR_materials_transmission"))
         material.transmission = static_cast<float>(number_in(*transmission, "transmissionFactor", 0.0));
     if (base.baseColorTexture.index >= 0) read_texture(material, base.baseColorTexture, place);
+    read_maps(material.maps, source, place);
     return material;
 }
 

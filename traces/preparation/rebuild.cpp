@@ -42,6 +42,7 @@ Scene rebuild_scene(Scene scene, TopologyWanted topology, const MakeParts& make)
     const bool shared = scene.resources.use_count() > 1;
     next->textures = shared ? scene.resources->textures : std::move(scene.resources->textures);
     next->materials = scene.resources->materials;
+    next->maps = shared ? scene.resources->maps : std::move(scene.resources->maps);
     next->find_runs();
     scene.resources = std::move(next);
     scene.draws = std::move(draws);

@@ -1,6 +1,7 @@
 #include "traces/record_module/arrays.hpp"
 
 #include "traces/record_module/context.hpp"
+#include "traces/record_module/element_types.hpp"
 #include "traces/record_module/fixed_state_names.hpp"
 #include "traces/record_module/recorder.hpp"
 
@@ -21,32 +22,6 @@ struct Source {
     const std::byte* memory = nullptr; ///< without a buffer
     std::uint32_t element = 0;         ///< bytes
 };
-
-std::uint32_t type_bytes(GLenum type) {
-    switch (type) {
-    case GL_BYTE:
-    case GL_UNSIGNED_BYTE:
-        return 1;
-    case GL_SHORT:
-    case GL_UNSIGNED_SHORT:
-    case GL_HALF_FLOAT:
-        return 2;
-    case GL_DOUBLE:
-        return 8;
-    default:
-        return 4;
-    }
-}
-
-bool is_packed(GLenum type) {
-    return type == GL_INT_2_10_10_10_REV || type == GL_UNSIGNED_INT_2_10_10_10_REV ||
-           type == GL_UNSIGNED_INT_10F_11F_11F_REV;
-}
-
-std::uint32_t element_bytes(const Array& array) {
-    if (is_packed(array.type)) return 4;
-    return type_bytes(array.type) * (array.components == GL_BGRA ? 4 : array.components);
-}
 
 /// Names of an old array's state.
 struct OldArray {
@@ -182,7 +157,7 @@ bool read_numbered_array(Source& source, GLuint index) {
 }
 
 std::uint32_t index_at(const std::byte* bytes, GLenum type, std::size_t i) {
-    const std::size_t size = type_bytes(type);
+    const std::size_t size = index_bytes(type);
     std::uint32_t value = 0;
     std::memcpy(&value, bytes + i * size, size); // little-endian
     return value;
@@ -192,7 +167,7 @@ std::uint32_t index_at(const std::byte* bytes, GLenum type, std::size_t i) {
 std::uint64_t vertices_used(const Geometry& geometry, std::span<const std::byte> indices) {
     if (geometry.index_type == 0) return std::uint64_t{geometry.first} + geometry.count;
     std::int64_t most = 0;
-    const std::size_t size = type_bytes(geometry.index_type);
+    const std::size_t size = index_bytes(geometry.index_type);
     for (std::size_t i = 0; i < geometry.count && geometry.index_offset + (i + 1) * size <= indices.size(); ++i) {
         const std::uint32_t index = index_at(indices.data() + geometry.index_offset, geometry.index_type, i);
         if (geometry.restart && index == geometry.restart_index) continue;
@@ -210,8 +185,9 @@ void read_memory(std::vector<Source*>& sources, std::uint64_t vertices, const Ge
         std::size_t end = begin;
         for (; end < sources.size(); ++end) {
             const Source& other = *sources[end];
-            if (other.array.stride != first.array.stride || other.array.divisor != first.array.divisor ||
-                other.memory >= first.memory + first.array.stride)
+            if (end > begin &&
+                (other.array.stride != first.array.stride || other.array.divisor != first.array.divisor ||
+                 other.memory >= first.memory + first.array.stride))
                 break;
             const std::uint64_t elements =
                 other.array.divisor == 0 ? vertices
@@ -236,12 +212,12 @@ void add_indices(Geometry& geometry, const DrawCall& call, std::vector<std::byte
         geometry.index_offset = reinterpret_cast<std::uintptr_t>(call.indices);
     } else {
         const auto* memory = static_cast<const std::byte*>(call.indices);
-        indices.assign(memory, memory + static_cast<std::size_t>(call.count) * type_bytes(call.index_type));
+        indices.assign(memory, memory + static_cast<std::size_t>(call.count) * index_bytes(call.index_type));
     }
     geometry.index_blob = recorder().blob(indices);
     const bool fixed = REAL(glIsEnabled)(GL_PRIMITIVE_RESTART_FIXED_INDEX) != GL_FALSE;
     geometry.restart = fixed || REAL(glIsEnabled)(GL_PRIMITIVE_RESTART) != GL_FALSE;
-    geometry.restart_index = fixed ? 0xFFFFFFFFU >> (32 - 8 * type_bytes(call.index_type))
+    geometry.restart_index = fixed ? 0xFFFFFFFFU >> (32 - 8 * index_bytes(call.index_type))
                                    : static_cast<std::uint32_t>(integer(GL_PRIMITIVE_RESTART_INDEX));
 }
 

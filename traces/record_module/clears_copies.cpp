@@ -119,11 +119,6 @@ Copy rectangle(GLint x, GLint y, GLsizei width, GLsizei height, GLint to_x, GLin
     return copy;
 }
 
-struct Blit {
-    std::array<GLint, 4> from{}, to{};
-    GLbitfield mask = 0;
-};
-
 bool has_samples(GLenum framebuffer) {
     const GLint before = integer(GL_READ_FRAMEBUFFER_BINDING);
     if (framebuffer == GL_DRAW_FRAMEBUFFER)
@@ -133,23 +128,65 @@ bool has_samples(GLenum framebuffer) {
     return several;
 }
 
-/// Copies of colour, neither scaled nor turned, cut or resolved.
-void record_blit(const char* call, const Blit& blit) {
-    const GLint width = blit.from[2] - blit.from[0], height = blit.from[3] - blit.from[1];
-    const bool plain = width > 0 && height > 0 && blit.to[2] - blit.to[0] == width && blit.to[3] - blit.to[1] == height;
-    if (!plain || blit.mask != GL_COLOR_BUFFER_BIT || REAL(glIsEnabled)(GL_SCISSOR_TEST) != GL_FALSE ||
-        has_samples(GL_READ_FRAMEBUFFER) != has_samples(GL_DRAW_FRAMEBUFFER)) {
-        recorder().count(std::string(call) + (plain ? " of more than colours" : " that scales or turns"));
+GLint extent(const std::array<std::int32_t, 4>& corners, std::size_t axis) {
+    return corners.at(axis + 2) - corners.at(axis);
+}
+
+bool only_moves(const Blit& blit) {
+    const auto same = [&](std::size_t axis) {
+        return extent(blit.source, axis) > 0 && extent(blit.source, axis) == extent(blit.destination, axis);
+    };
+    return !blit.scissor_test && same(0) && same(1);
+}
+
+void record_one_blit(Blit blit, const Target& from, const Target& to) {
+    if (!is_whole(from, to)) return;
+    if (!only_moves(blit)) {
+        blit.from = from;
+        blit.to = to;
+        recorder().blit(blit);
+        return;
+    }
+    Copy copy = rectangle(blit.source[0], blit.source[1], extent(blit.source, 0), extent(blit.source, 1),
+                          blit.destination[0], blit.destination[1]);
+    copy.call = blit.call;
+    copy.from = from;
+    copy.to = to;
+    recorder().copy(copy);
+}
+
+/// Why a blit cannot be recorded; empty: it can.
+std::string blit_obstacle(const Targets& to, GLbitfield mask) {
+    if ((mask & GL_STENCIL_BUFFER_BIT) != 0 && to.stencil.surface >= 0) return "of stencils";
+    if (has_samples(GL_READ_FRAMEBUFFER) || has_samples(GL_DRAW_FRAMEBUFFER)) return "of several samples a pixel";
+    return {};
+}
+
+bool is_same(const Target& a, const Target& b) {
+    return a.surface == b.surface && a.level == b.level && a.layer == b.layer;
+}
+
+/// Of colours and depths.
+void record_blit(Blit blit, GLbitfield mask) {
+    // An error of the program's, of which nothing comes.
+    if (blit.linear && (mask & (GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT)) != 0) return;
+    const Targets to = draw_targets();
+    const bool colours = (mask & GL_COLOR_BUFFER_BIT) != 0, depths = (mask & GL_DEPTH_BUFFER_BIT) != 0;
+    const Target from = colours ? read_target() : Target{}, depth = depths ? read_depth_target() : Target{};
+    std::string obstacle = blit_obstacle(to, mask);
+    for (const Target& target : to.colours)
+        if (colours && is_whole(from, target) && is_same(from, target)) obstacle = "within one surface";
+    if (depths && is_whole(depth, to.depth) && is_same(depth, to.depth)) obstacle = "within one surface";
+    if (!obstacle.empty()) {
+        recorder().count(blit.call + " " + obstacle);
         draw_targets_changed();
         return;
     }
-    Copy copy = rectangle(blit.from[0], blit.from[1], width, height, blit.to[0], blit.to[1]);
-    copy.call = call;
-    copy.from = read_target();
-    for (const Target& target : draw_targets().colours) {
-        copy.to = target;
-        if (is_whole(copy.from, copy.to)) recorder().copy(copy);
-    }
+    blit.scissor_test = REAL(glIsEnabled)(GL_SCISSOR_TEST) != GL_FALSE;
+    REAL(glGetIntegerv)(GL_SCISSOR_BOX, blit.scissor.data());
+    if (colours)
+        for (const Target& target : to.colours) record_one_blit(blit, from, target);
+    if (depths) record_one_blit(blit, depth, to.depth);
 }
 
 } // namespace
@@ -263,7 +300,12 @@ EXPORTED void glBlitFramebuffer(GLint x0, GLint y0, GLint x1, GLint y1, GLint to
         const record::Lock lock;
         if (record::recorder().wanted() && record::context_is_usable("glBlitFramebuffer")) {
             const record::Quiet quiet;
-            record::record_blit("glBlitFramebuffer", {{x0, y0, x1, y1}, {to_x0, to_y0, to_x1, to_y1}, mask});
+            record_stream::Blit blit;
+            blit.call = "glBlitFramebuffer";
+            blit.source = {x0, y0, x1, y1};
+            blit.destination = {to_x0, to_y0, to_x1, to_y1};
+            blit.linear = filter == GL_LINEAR;
+            record::record_blit(blit, mask);
         }
     }
     REAL(glBlitFramebuffer)(x0, y0, x1, y1, to_x0, to_y0, to_x1, to_y1, mask, filter);

@@ -2,6 +2,7 @@
 #include "traces/record_module/draws.hpp"
 
 #include "traces/record_module/context.hpp"
+#include "traces/record_module/element_types.hpp"
 #include "traces/record_module/lists.hpp"
 #include "traces/record_module/recorder.hpp"
 #include "traces/record_module/state.hpp"
@@ -132,8 +133,6 @@ struct ElementsCommand {
     GLuint base_instance;
 };
 
-std::size_t index_bytes(GLenum type) { return type == GL_UNSIGNED_BYTE ? 1 : type == GL_UNSIGNED_SHORT ? 2 : 4; }
-
 std::vector<DrawCall> indirect_arrays(const char* name, GLenum mode, const void* indirect, GLsizei count,
                                       GLsizei stride) {
     std::vector<DrawCall> calls;
@@ -148,8 +147,9 @@ std::vector<DrawCall> indirect_elements(const char* name, GLenum mode, GLenum ty
     std::vector<DrawCall> calls;
     for (const ElementsCommand& each : commands_at<ElementsCommand>(indirect, count, stride))
         calls.push_back({name, mode, 0, static_cast<GLsizei>(each.count), type,
-                         reinterpret_cast<const void*>(each.first_index * index_bytes(type)), each.base_vertex,
-                         static_cast<GLsizei>(each.instances), each.base_instance});
+                         // NOLINTNEXTLINE(performance-no-int-to-ptr): OpenGL takes offsets as pointers
+                         reinterpret_cast<const void*>(std::size_t{each.first_index} * index_bytes(type)),
+                         each.base_vertex, static_cast<GLsizei>(each.instances), each.base_instance});
     return calls;
 }
 

@@ -78,6 +78,7 @@ EXPORTED void* dlsym(void* handle, const char* name) noexcept {
     return lookup(handle, name) == nullptr ? nullptr : hook;
 }
 
+// NOLINTBEGIN(readability-identifier-naming): names of GLX and EGL
 EXPORTED void* glXGetProcAddressARB(const char* name) {
     return record::replaced(
         name, reinterpret_cast<void* (*)(const char*)>(record::real_function("glXGetProcAddressARB"))(name));
@@ -88,6 +89,7 @@ EXPORTED void* eglGetProcAddress(const char* name) {
     return record::replaced(name,
                             reinterpret_cast<void* (*)(const char*)>(record::real_function("eglGetProcAddress"))(name));
 }
+// NOLINTEND(readability-identifier-naming)
 
 std::span<const record::Hook> record::lookup_hooks() {
     static const std::array hooks{HOOK(glXGetProcAddressARB), HOOK(glXGetProcAddress), HOOK(eglGetProcAddress)};

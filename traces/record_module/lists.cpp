@@ -155,7 +155,7 @@ std::vector<GLuint> names_of(GLsizei count, GLenum type, const void* names) {
     const auto add = [&]<class T>(T /*kind*/) {
         for (GLsizei i = 0; i < count; ++i) result.push_back(static_cast<GLuint>(static_cast<const T*>(names)[i]));
     };
-    const auto add_bytes = [&](GLsizei size) {
+    const auto add_bytes = [&](std::ptrdiff_t size) {
         for (GLsizei i = 0; i < count; ++i)
             result.push_back(std::accumulate(bytes + i * size, bytes + (i + 1) * size, GLuint{0},
                                              [](GLuint sum, GLubyte byte) { return sum * 256 + byte; }));

@@ -50,11 +50,10 @@ void Recorder::write(const std::vector<std::byte>& record) {
         const ssize_t written = ::write(descriptor_, record.data() + done, record.size() - done);
         if (written < 0 && errno == EINTR) continue;
         if (written <= 0) {
-            failed_ = true; // a record that is cut off is found by its length
             std::fprintf(stderr, "ropsim: cannot write the recording: %s\n", std::strerror(errno));
-        } else {
-            done += static_cast<std::size_t>(written);
+            ::_exit(status_no_room); // else it would run on, with ropsim waiting for frames
         }
+        done += static_cast<std::size_t>(written);
     }
 }
 
@@ -83,6 +82,7 @@ void Recorder::context(const std::string& gl_version, const std::string& rendere
 void Recorder::draw(const Draw& draw) { write(Writer::record(Tag::draw, draw)); }
 void Recorder::clear(const Clear& clear) { write(Writer::record(Tag::clear, clear)); }
 void Recorder::copy(const Copy& copy) { write(Writer::record(Tag::copy, copy)); }
+void Recorder::blit(const Blit& blit) { write(Writer::record(Tag::blit, blit)); }
 
 void Recorder::count(const std::string& call) {
     if (wanted()) ++not_recorded_[call];

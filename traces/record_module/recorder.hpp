@@ -31,6 +31,7 @@ class Recorder {
     void draw(const record_stream::Draw& draw);
     void clear(const record_stream::Clear& clear);
     void copy(const record_stream::Copy& copy);
+    void blit(const record_stream::Blit& blit);
     /// Something that happened in a wanted frame and is not recorded.
     void count(const std::string& call);
     /// Buffers were swapped; `shown` is what they showed, where the frame is wanted.

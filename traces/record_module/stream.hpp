@@ -9,7 +9,22 @@
 
 namespace record_stream {
 
-enum class Tag : std::uint32_t { context, blob, surface, program, draw, clear, copy, frame, not_recorded, finished };
+/// With which a program ends whose recording cannot be written.
+inline constexpr int status_no_room = 120;
+
+enum class Tag : std::uint32_t {
+    context,
+    blob,
+    surface,
+    program,
+    draw,
+    clear,
+    copy,
+    blit,
+    frame,
+    not_recorded,
+    finished
+};
 
 struct Target {
     std::int32_t surface = -1;
@@ -168,6 +183,18 @@ struct Copy {
     std::uint32_t width = 0, height = 0;
 
     void fields(auto& archive) { archive(call, from, to, x, y, to_x, to_y, width, height); }
+};
+
+/// A copy that scales, turns or is cut. Rectangles are two corners, rows counted from the bottom; either may run
+/// backwards.
+struct Blit {
+    std::string call;
+    Target from, to;
+    std::array<std::int32_t, 4> source{}, destination{};
+    bool linear = false, scissor_test = false;
+    std::array<std::int32_t, 4> scissor{}; ///< corner, width and height
+
+    void fields(auto& archive) { archive(call, from, to, source, destination, linear, scissor_test, scissor); }
 };
 
 /// A frame ends.

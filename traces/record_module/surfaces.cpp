@@ -198,6 +198,15 @@ Target read_target() {
     return framebuffer == 0 ? window_colour(buffer, drawable_size()) : framebuffer_target(framebuffer, buffer, size);
 }
 
+Target read_depth_target() {
+    const auto framebuffer = static_cast<GLuint>(integer(GL_READ_FRAMEBUFFER_BINDING));
+    Size size;
+    if (framebuffer != 0) return framebuffer_target(framebuffer, GL_DEPTH_ATTACHMENT, size);
+    Targets targets;
+    add_window_depth(targets, drawable_size());
+    return targets.depth;
+}
+
 void texture_has_target(GLuint texture, GLenum target) { tables().targets[texture] = target; }
 void texture_changed(GLuint texture) { ++tables().changes[{Kind::texture, texture}]; }
 void renderbuffer_changed(GLuint renderbuffer) { ++tables().changes[{Kind::renderbuffer, renderbuffer}]; }

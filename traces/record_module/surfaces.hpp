@@ -18,8 +18,9 @@ record_stream::Target drawn_texture(GLuint texture, std::uint32_t level, std::ui
 record_stream::Targets draw_targets();
 /// Of the window.
 record_stream::Targets window_targets();
-/// What the framebuffer for reading reads colours from.
+/// What the framebuffer for reading reads colours from, and depths.
 record_stream::Target read_target();
+record_stream::Target read_depth_target();
 
 /// The program says what kind of a texture a name is; drivers tell in core profiles alone.
 void texture_has_target(GLuint texture, GLenum target);

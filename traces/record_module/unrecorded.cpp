@@ -17,11 +17,13 @@ void note_unrecorded(const char* call) {
 
 } // namespace
 
+// NOLINTBEGIN(bugprone-macro-parentheses): arguments come with theirs
 #define COUNTED(result, function, parameters, arguments)                                                               \
     EXPORTED result function parameters {                                                                              \
         note_unrecorded(#function);                                                                                    \
         return REAL(function) arguments;                                                                               \
     }
+// NOLINTEND(bugprone-macro-parentheses)
 
 #define UNRECORDED(X)                                                                                                  \
     X(void, glDrawPixels, (GLsizei width, GLsizei height, GLenum format, GLenum type, const void* data),               \

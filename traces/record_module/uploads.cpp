@@ -36,6 +36,7 @@ bool makes_mipmaps(GLenum name) { return name == GL_GENERATE_MIPMAP; }
 
 } // namespace
 
+// NOLINTBEGIN(bugprone-macro-parentheses): arguments come with theirs
 #define BOUND(function, parameters, arguments)                                                                         \
     EXPORTED void function parameters {                                                                                \
         changing_bound(target, [&] { REAL(function) arguments; });                                                     \
@@ -44,100 +45,110 @@ bool makes_mipmaps(GLenum name) { return name == GL_GENERATE_MIPMAP; }
     EXPORTED void function parameters {                                                                                \
         changing(texture, [&] { REAL(function) arguments; });                                                          \
     }
+// NOLINTEND(bugprone-macro-parentheses)
+#define ROW(function, parameters, arguments) HOOK(function),
 
-BOUND(glTexImage1D,
-      (GLenum target, GLint level, GLint internal, GLsizei width, GLint border, GLenum format, GLenum type,
-       const void* data),
-      (target, level, internal, width, border, format, type, data))
-BOUND(glTexImage2D,
-      (GLenum target, GLint level, GLint internal, GLsizei width, GLsizei height, GLint border, GLenum format,
-       GLenum type, const void* data),
-      (target, level, internal, width, height, border, format, type, data))
-BOUND(glTexImage3D,
-      (GLenum target, GLint level, GLint internal, GLsizei width, GLsizei height, GLsizei depth, GLint border,
-       GLenum format, GLenum type, const void* data),
-      (target, level, internal, width, height, depth, border, format, type, data))
-BOUND(glTexSubImage1D,
-      (GLenum target, GLint level, GLint x, GLsizei width, GLenum format, GLenum type, const void* data),
-      (target, level, x, width, format, type, data))
-BOUND(glTexSubImage2D,
-      (GLenum target, GLint level, GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLenum type,
-       const void* data),
-      (target, level, x, y, width, height, format, type, data))
-BOUND(glTexSubImage3D,
-      (GLenum target, GLint level, GLint x, GLint y, GLint z, GLsizei width, GLsizei height, GLsizei depth,
-       GLenum format, GLenum type, const void* data),
-      (target, level, x, y, z, width, height, depth, format, type, data))
-BOUND(glCompressedTexImage1D,
-      (GLenum target, GLint level, GLenum internal, GLsizei width, GLint border, GLsizei size, const void* data),
-      (target, level, internal, width, border, size, data))
-BOUND(glCompressedTexImage2D,
-      (GLenum target, GLint level, GLenum internal, GLsizei width, GLsizei height, GLint border, GLsizei size,
-       const void* data),
-      (target, level, internal, width, height, border, size, data))
-BOUND(glCompressedTexImage3D,
-      (GLenum target, GLint level, GLenum internal, GLsizei width, GLsizei height, GLsizei depth, GLint border,
-       GLsizei size, const void* data),
-      (target, level, internal, width, height, depth, border, size, data))
-BOUND(glCompressedTexSubImage2D,
-      (GLenum target, GLint level, GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLsizei size,
-       const void* data),
-      (target, level, x, y, width, height, format, size, data))
-BOUND(glCompressedTexSubImage3D,
-      (GLenum target, GLint level, GLint x, GLint y, GLint z, GLsizei width, GLsizei height, GLsizei depth,
-       GLenum format, GLsizei size, const void* data),
-      (target, level, x, y, z, width, height, depth, format, size, data))
-BOUND(glTexStorage1D, (GLenum target, GLsizei levels, GLenum format, GLsizei width), (target, levels, format, width))
-BOUND(glTexStorage2D, (GLenum target, GLsizei levels, GLenum format, GLsizei width, GLsizei height),
-      (target, levels, format, width, height))
-BOUND(glTexStorage3D, (GLenum target, GLsizei levels, GLenum format, GLsizei width, GLsizei height, GLsizei depth),
-      (target, levels, format, width, height, depth))
-BOUND(glTexImage2DMultisample,
-      (GLenum target, GLsizei samples, GLenum format, GLsizei width, GLsizei height, GLboolean fixed),
-      (target, samples, format, width, height, fixed))
-BOUND(glTexStorage2DMultisample,
-      (GLenum target, GLsizei samples, GLenum format, GLsizei width, GLsizei height, GLboolean fixed),
-      (target, samples, format, width, height, fixed))
-BOUND(glCopyTexImage1D, (GLenum target, GLint level, GLenum format, GLint x, GLint y, GLsizei width, GLint border),
-      (target, level, format, x, y, width, border))
-BOUND(glCopyTexSubImage1D, (GLenum target, GLint level, GLint to_x, GLint x, GLint y, GLsizei width),
-      (target, level, to_x, x, y, width))
-BOUND(glGenerateMipmap, (GLenum target), (target))
+/// Calls that change the texture that is bound to a target.
+#define BOUND_CALLS(X)                                                                                                 \
+    X(glTexImage1D,                                                                                                    \
+      (GLenum target, GLint level, GLint internal, GLsizei width, GLint border, GLenum format, GLenum type,            \
+       const void* data),                                                                                              \
+      (target, level, internal, width, border, format, type, data))                                                    \
+    X(glTexImage2D,                                                                                                    \
+      (GLenum target, GLint level, GLint internal, GLsizei width, GLsizei height, GLint border, GLenum format,         \
+       GLenum type, const void* data),                                                                                 \
+      (target, level, internal, width, height, border, format, type, data))                                            \
+    X(glTexImage3D,                                                                                                    \
+      (GLenum target, GLint level, GLint internal, GLsizei width, GLsizei height, GLsizei depth, GLint border,         \
+       GLenum format, GLenum type, const void* data),                                                                  \
+      (target, level, internal, width, height, depth, border, format, type, data))                                     \
+    X(glTexSubImage1D,                                                                                                 \
+      (GLenum target, GLint level, GLint x, GLsizei width, GLenum format, GLenum type, const void* data),              \
+      (target, level, x, width, format, type, data))                                                                   \
+    X(glTexSubImage2D,                                                                                                 \
+      (GLenum target, GLint level, GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLenum type,        \
+       const void* data),                                                                                              \
+      (target, level, x, y, width, height, format, type, data))                                                        \
+    X(glTexSubImage3D,                                                                                                 \
+      (GLenum target, GLint level, GLint x, GLint y, GLint z, GLsizei width, GLsizei height, GLsizei depth,            \
+       GLenum format, GLenum type, const void* data),                                                                  \
+      (target, level, x, y, z, width, height, depth, format, type, data))                                              \
+    X(glCompressedTexImage1D,                                                                                          \
+      (GLenum target, GLint level, GLenum internal, GLsizei width, GLint border, GLsizei size, const void* data),      \
+      (target, level, internal, width, border, size, data))                                                            \
+    X(glCompressedTexImage2D,                                                                                          \
+      (GLenum target, GLint level, GLenum internal, GLsizei width, GLsizei height, GLint border, GLsizei size,         \
+       const void* data),                                                                                              \
+      (target, level, internal, width, height, border, size, data))                                                    \
+    X(glCompressedTexImage3D,                                                                                          \
+      (GLenum target, GLint level, GLenum internal, GLsizei width, GLsizei height, GLsizei depth, GLint border,        \
+       GLsizei size, const void* data),                                                                                \
+      (target, level, internal, width, height, depth, border, size, data))                                             \
+    X(glCompressedTexSubImage2D,                                                                                       \
+      (GLenum target, GLint level, GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLsizei size,       \
+       const void* data),                                                                                              \
+      (target, level, x, y, width, height, format, size, data))                                                        \
+    X(glCompressedTexSubImage3D,                                                                                       \
+      (GLenum target, GLint level, GLint x, GLint y, GLint z, GLsizei width, GLsizei height, GLsizei depth,            \
+       GLenum format, GLsizei size, const void* data),                                                                 \
+      (target, level, x, y, z, width, height, depth, format, size, data))                                              \
+    X(glTexStorage1D, (GLenum target, GLsizei levels, GLenum format, GLsizei width), (target, levels, format, width))  \
+    X(glTexStorage2D, (GLenum target, GLsizei levels, GLenum format, GLsizei width, GLsizei height),                   \
+      (target, levels, format, width, height))                                                                         \
+    X(glTexStorage3D, (GLenum target, GLsizei levels, GLenum format, GLsizei width, GLsizei height, GLsizei depth),    \
+      (target, levels, format, width, height, depth))                                                                  \
+    X(glTexImage2DMultisample,                                                                                         \
+      (GLenum target, GLsizei samples, GLenum format, GLsizei width, GLsizei height, GLboolean fixed),                 \
+      (target, samples, format, width, height, fixed))                                                                 \
+    X(glTexStorage2DMultisample,                                                                                       \
+      (GLenum target, GLsizei samples, GLenum format, GLsizei width, GLsizei height, GLboolean fixed),                 \
+      (target, samples, format, width, height, fixed))                                                                 \
+    X(glCopyTexImage1D, (GLenum target, GLint level, GLenum format, GLint x, GLint y, GLsizei width, GLint border),    \
+      (target, level, format, x, y, width, border))                                                                    \
+    X(glCopyTexSubImage1D, (GLenum target, GLint level, GLint to_x, GLint x, GLint y, GLsizei width),                  \
+      (target, level, to_x, x, y, width))                                                                              \
+    X(glGenerateMipmap, (GLenum target), (target))
+
+/// Calls that change the texture that they name.
+#define NAMED_CALLS(X)                                                                                                 \
+    X(glTextureSubImage1D,                                                                                             \
+      (GLuint texture, GLint level, GLint x, GLsizei width, GLenum format, GLenum type, const void* data),             \
+      (texture, level, x, width, format, type, data))                                                                  \
+    X(glTextureSubImage2D,                                                                                             \
+      (GLuint texture, GLint level, GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLenum type,       \
+       const void* data),                                                                                              \
+      (texture, level, x, y, width, height, format, type, data))                                                       \
+    X(glTextureSubImage3D,                                                                                             \
+      (GLuint texture, GLint level, GLint x, GLint y, GLint z, GLsizei width, GLsizei height, GLsizei depth,           \
+       GLenum format, GLenum type, const void* data),                                                                  \
+      (texture, level, x, y, z, width, height, depth, format, type, data))                                             \
+    X(glCompressedTextureSubImage2D,                                                                                   \
+      (GLuint texture, GLint level, GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLsizei size,      \
+       const void* data),                                                                                              \
+      (texture, level, x, y, width, height, format, size, data))                                                       \
+    X(glCompressedTextureSubImage3D,                                                                                   \
+      (GLuint texture, GLint level, GLint x, GLint y, GLint z, GLsizei width, GLsizei height, GLsizei depth,           \
+       GLenum format, GLsizei size, const void* data),                                                                 \
+      (texture, level, x, y, z, width, height, depth, format, size, data))                                             \
+    X(glTextureStorage1D, (GLuint texture, GLsizei levels, GLenum format, GLsizei width),                              \
+      (texture, levels, format, width))                                                                                \
+    X(glTextureStorage2D, (GLuint texture, GLsizei levels, GLenum format, GLsizei width, GLsizei height),              \
+      (texture, levels, format, width, height))                                                                        \
+    X(glTextureStorage3D,                                                                                              \
+      (GLuint texture, GLsizei levels, GLenum format, GLsizei width, GLsizei height, GLsizei depth),                   \
+      (texture, levels, format, width, height, depth))                                                                 \
+    X(glGenerateTextureMipmap, (GLuint texture), (texture))                                                            \
+    X(glClearTexImage, (GLuint texture, GLint level, GLenum format, GLenum type, const void* data),                    \
+      (texture, level, format, type, data))                                                                            \
+    X(glClearTexSubImage,                                                                                              \
+      (GLuint texture, GLint level, GLint x, GLint y, GLint z, GLsizei width, GLsizei height, GLsizei depth,           \
+       GLenum format, GLenum type, const void* data),                                                                  \
+      (texture, level, x, y, z, width, height, depth, format, type, data))                                             \
+    X(glInvalidateTexImage, (GLuint texture, GLint level), (texture, level))
+
+BOUND_CALLS(BOUND)
+NAMED_CALLS(NAMED)
 ALSO_NAMED(glGenerateMipmapEXT, glGenerateMipmap);
-
-NAMED(glTextureSubImage1D,
-      (GLuint texture, GLint level, GLint x, GLsizei width, GLenum format, GLenum type, const void* data),
-      (texture, level, x, width, format, type, data))
-NAMED(glTextureSubImage2D,
-      (GLuint texture, GLint level, GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLenum type,
-       const void* data),
-      (texture, level, x, y, width, height, format, type, data))
-NAMED(glTextureSubImage3D,
-      (GLuint texture, GLint level, GLint x, GLint y, GLint z, GLsizei width, GLsizei height, GLsizei depth,
-       GLenum format, GLenum type, const void* data),
-      (texture, level, x, y, z, width, height, depth, format, type, data))
-NAMED(glCompressedTextureSubImage2D,
-      (GLuint texture, GLint level, GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLsizei size,
-       const void* data),
-      (texture, level, x, y, width, height, format, size, data))
-NAMED(glCompressedTextureSubImage3D,
-      (GLuint texture, GLint level, GLint x, GLint y, GLint z, GLsizei width, GLsizei height, GLsizei depth,
-       GLenum format, GLsizei size, const void* data),
-      (texture, level, x, y, z, width, height, depth, format, size, data))
-NAMED(glTextureStorage1D, (GLuint texture, GLsizei levels, GLenum format, GLsizei width),
-      (texture, levels, format, width))
-NAMED(glTextureStorage2D, (GLuint texture, GLsizei levels, GLenum format, GLsizei width, GLsizei height),
-      (texture, levels, format, width, height))
-NAMED(glTextureStorage3D, (GLuint texture, GLsizei levels, GLenum format, GLsizei width, GLsizei height, GLsizei depth),
-      (texture, levels, format, width, height, depth))
-NAMED(glGenerateTextureMipmap, (GLuint texture), (texture))
-NAMED(glClearTexImage, (GLuint texture, GLint level, GLenum format, GLenum type, const void* data),
-      (texture, level, format, type, data))
-NAMED(glClearTexSubImage,
-      (GLuint texture, GLint level, GLint x, GLint y, GLint z, GLsizei width, GLsizei height, GLsizei depth,
-       GLenum format, GLenum type, const void* data),
-      (texture, level, x, y, z, width, height, depth, format, type, data))
-NAMED(glInvalidateTexImage, (GLuint texture, GLint level), (texture, level))
 
 EXPORTED void glCopyImageSubData(GLuint from, GLenum from_target, GLint from_level, GLint x, GLint y, GLint z,
                                  GLuint to, GLenum to_target, GLint to_level, GLint to_x, GLint to_y, GLint to_z,
@@ -179,82 +190,34 @@ EXPORTED void glTexParameteri(GLenum target, GLenum name, GLint value) {
     REAL(glTexParameteri)(target, name, anisotropy_of(name, value));
     if (makes_mipmaps(name)) changing_bound(target, [] {});
 }
-EXPORTED void glTexParameterf(GLenum target, GLenum name, GLfloat value) {
-    REAL(glTexParameterf)(target, name, anisotropy_of(name, value));
-}
-EXPORTED void glTexParameteriv(GLenum target, GLenum name, const GLint* values) {
-    REAL(glTexParameteriv)(target, name, anisotropy_at(name, values));
-}
-EXPORTED void glTexParameterfv(GLenum target, GLenum name, const GLfloat* values) {
-    REAL(glTexParameterfv)(target, name, anisotropy_at(name, values));
-}
-EXPORTED void glTextureParameteri(GLuint texture, GLenum name, GLint value) {
-    REAL(glTextureParameteri)(texture, name, anisotropy_of(name, value));
-}
-EXPORTED void glTextureParameterf(GLuint texture, GLenum name, GLfloat value) {
-    REAL(glTextureParameterf)(texture, name, anisotropy_of(name, value));
-}
-EXPORTED void glSamplerParameteri(GLuint sampler, GLenum name, GLint value) {
-    REAL(glSamplerParameteri)(sampler, name, anisotropy_of(name, value));
-}
-EXPORTED void glSamplerParameterf(GLuint sampler, GLenum name, GLfloat value) {
-    REAL(glSamplerParameterf)(sampler, name, anisotropy_of(name, value));
-}
-EXPORTED void glSamplerParameteriv(GLuint sampler, GLenum name, const GLint* values) {
-    REAL(glSamplerParameteriv)(sampler, name, anisotropy_at(name, values));
-}
-EXPORTED void glSamplerParameterfv(GLuint sampler, GLenum name, const GLfloat* values) {
-    REAL(glSamplerParameterfv)(sampler, name, anisotropy_at(name, values));
-}
+
+#define PARAMETER(function, Object, Value, limited)                                                                    \
+    EXPORTED void function(Object object, GLenum name, Value value) {                                                  \
+        REAL(function)(object, name, limited(name, value));                                                            \
+    }
+#define PARAMETER_ROW(function, Object, Value, limited) HOOK(function),
+#define PARAMETER_CALLS(X)                                                                                             \
+    X(glTexParameterf, GLenum, GLfloat, anisotropy_of)                                                                 \
+    X(glTexParameteriv, GLenum, const GLint*, anisotropy_at)                                                           \
+    X(glTexParameterfv, GLenum, const GLfloat*, anisotropy_at)                                                         \
+    X(glTextureParameteri, GLuint, GLint, anisotropy_of)                                                               \
+    X(glTextureParameterf, GLuint, GLfloat, anisotropy_of)                                                             \
+    X(glSamplerParameteri, GLuint, GLint, anisotropy_of)                                                               \
+    X(glSamplerParameterf, GLuint, GLfloat, anisotropy_of)                                                             \
+    X(glSamplerParameteriv, GLuint, const GLint*, anisotropy_at)                                                       \
+    X(glSamplerParameterfv, GLuint, const GLfloat*, anisotropy_at)
+
+PARAMETER_CALLS(PARAMETER)
 
 std::span<const record::Hook> record::upload_hooks() {
-    static const std::array hooks{HOOK(glTexImage1D),
-                                  HOOK(glTexImage2D),
-                                  HOOK(glTexImage3D),
-                                  HOOK(glTexSubImage1D),
-                                  HOOK(glTexSubImage2D),
-                                  HOOK(glTexSubImage3D),
-                                  HOOK(glCompressedTexImage1D),
-                                  HOOK(glCompressedTexImage2D),
-                                  HOOK(glCompressedTexImage3D),
-                                  HOOK(glCompressedTexSubImage2D),
-                                  HOOK(glCompressedTexSubImage3D),
-                                  HOOK(glTexStorage1D),
-                                  HOOK(glTexStorage2D),
-                                  HOOK(glTexStorage3D),
-                                  HOOK(glTexImage2DMultisample),
-                                  HOOK(glTexStorage2DMultisample),
-                                  HOOK(glCopyTexImage1D),
-                                  HOOK(glCopyTexSubImage1D),
-                                  HOOK(glGenerateMipmap),
-                                  HOOK(glGenerateMipmapEXT),
-                                  HOOK(glTextureSubImage1D),
-                                  HOOK(glTextureSubImage2D),
-                                  HOOK(glTextureSubImage3D),
-                                  HOOK(glCompressedTextureSubImage2D),
-                                  HOOK(glCompressedTextureSubImage3D),
-                                  HOOK(glTextureStorage1D),
-                                  HOOK(glTextureStorage2D),
-                                  HOOK(glTextureStorage3D),
-                                  HOOK(glGenerateTextureMipmap),
-                                  HOOK(glClearTexImage),
-                                  HOOK(glClearTexSubImage),
-                                  HOOK(glInvalidateTexImage),
+    static const std::array hooks{BOUND_CALLS(ROW) NAMED_CALLS(ROW) PARAMETER_CALLS(PARAMETER_ROW)
+                                      HOOK(glGenerateMipmapEXT),
                                   HOOK(glCopyImageSubData),
                                   HOOK(glBindTexture),
                                   HOOK(glBindTextureEXT),
                                   HOOK(glCreateTextures),
                                   HOOK(glDeleteTextures),
                                   HOOK(glDeleteRenderbuffers),
-                                  HOOK(glTexParameteri),
-                                  HOOK(glTexParameterf),
-                                  HOOK(glTexParameteriv),
-                                  HOOK(glTexParameterfv),
-                                  HOOK(glTextureParameteri),
-                                  HOOK(glTextureParameterf),
-                                  HOOK(glSamplerParameteri),
-                                  HOOK(glSamplerParameterf),
-                                  HOOK(glSamplerParameteriv),
-                                  HOOK(glSamplerParameterfv)};
+                                  HOOK(glTexParameteri)};
     return hooks;
 }

@@ -21,6 +21,7 @@ void end_frame(const char* call) {
 } // namespace
 
 // GLX 1.4 and EGL 1.5, whose headers are not asked for: pointers and handles as they are passed.
+// NOLINTBEGIN(readability-identifier-naming): their names
 EXPORTED void glXSwapBuffers(void* display, unsigned long drawable) {
     end_frame("glXSwapBuffers");
     REAL(glXSwapBuffers)(display, drawable);
@@ -51,6 +52,7 @@ EXPORTED unsigned eglDestroyContext(void* display, void* context) {
     }
     return REAL(eglDestroyContext)(display, context);
 }
+// NOLINTEND(readability-identifier-naming)
 
 EXPORTED GLenum glGetError() {
     const record::Lock lock;

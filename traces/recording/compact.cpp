@@ -77,6 +77,12 @@ void visit_numbers(KeptTables& tables, RecordedCopy& copy, Visit visit) {
 }
 
 template <class Visit>
+void visit_numbers(KeptTables& tables, RecordedBlit& blit, Visit visit) {
+    visit(tables.surfaces, blit.from.surface);
+    visit(tables.surfaces, blit.to.surface);
+}
+
+template <class Visit>
 void visit_numbers(KeptTables& tables, TargetSet& set, Visit visit) {
     for (auto& colour : set.colours)
         if (colour) visit(tables.surfaces, colour->surface);

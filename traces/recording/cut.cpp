@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <fmt/format.h>
+#include <map>
 #include <set>
+#include <span>
 
 namespace traces {
 
@@ -30,6 +32,7 @@ class NeededPlanes {
             for (const RecordedCommand& command : frame.commands) {
                 const std::vector<SurfacePlane> planes = written_by(command);
                 written_.insert(planes.begin(), planes.end());
+                std::visit([&](const auto& one) { note_channels(one); }, command);
             }
     }
 
@@ -46,6 +49,11 @@ class NeededPlanes {
     /// From what is needed behind a command to what is needed before it.
     void go_before(const RecordedCommand& command) {
         std::visit([&](const auto& one) { before(one); }, command);
+    }
+    /// Contents that are set before anything sees them go; channels that nothing writes keep theirs.
+    void forget_contents(std::vector<RecordedSurface>& surfaces) const {
+        for (const SurfacePlane& plane : written_)
+            if (!needed_.contains(plane)) forget(surfaces.at(plane[0]), plane);
     }
 
   private:
@@ -70,6 +78,39 @@ class NeededPlanes {
         return planes;
     }
     static std::vector<SurfacePlane> written(const RecordedCopy& copy) { return {plane_of(copy.to)}; }
+    static std::vector<SurfacePlane> written(const RecordedBlit& blit) { return {plane_of(blit.to)}; }
+
+    // Which channels of a plane anything writes: a window without alpha is wholly set by a clear of three channels.
+    void note_channels(const RecordedDraw& draw) {
+        const TargetSet& set = targets(draw.targets);
+        for (std::size_t i = 0; i < set.colours.size(); ++i)
+            if (set.colours[i])
+                channels_[plane_of(*set.colours[i])] |= recording_.states.at(draw.state).write_mask.at(i);
+    }
+    void note_channels(const RecordedClear& clear) {
+        const TargetSet& set = targets(clear.targets);
+        for (std::size_t i = 0; i < set.colours.size(); ++i)
+            if (set.colours[i] && (clear.colours >> i & 1U) != 0)
+                channels_[plane_of(*set.colours[i])] |= clear.write_mask.at(i);
+    }
+    void note_channels(const auto& copy) { channels_[plane_of(copy.to)] = every_channel; }
+
+    /// The bytes of a plane become 0, but for those of channels that nothing writes.
+    void forget(RecordedSurface& surface, const SurfacePlane& plane) const {
+        pipeline::SharedBytes& held = surface.levels.at(plane[1]);
+        std::vector<std::byte> level(held.begin(), held.end());
+        const std::size_t bytes = level.size() / level_size(surface, plane[1]).planes;
+        const std::span<std::byte> own = std::span(level).subspan(plane[2] * bytes, bytes);
+        const auto channels = channels_.find(plane);
+        if (!pipeline::is_colour(surface.format) || channels == channels_.end() || channels->second == every_channel)
+            std::fill(own.begin(), own.end(), std::byte{0});
+        else if (surface.format == pipeline::SurfaceFormat::rgba8)
+            for (std::size_t i = 0; i < own.size(); ++i)
+                if ((channels->second >> i % 4 & 1U) != 0) own[i] = std::byte{0};
+        // A level without bytes is 0.
+        if (std::all_of(level.begin(), level.end(), [](std::byte one) { return one == std::byte{0}; })) level.clear();
+        held = std::move(level);
+    }
 
     // A draw leaves pixels as they are, blends and compares: it needs its targets.
     void before(const RecordedDraw& draw) {
@@ -85,9 +126,12 @@ class NeededPlanes {
             const LevelSize size = level_size(recording_.surfaces.at(target.surface), target.level);
             return set.width == size.width && set.height == size.height && covers(clear.scissor, set.width, set.height);
         };
-        constexpr std::uint8_t every_channel = 15, every_bit = 255;
+        const auto every_channel_that_is_written = [&](std::size_t i) {
+            return (channels_.at(plane_of(*set.colours[i])) & ~clear.write_mask.at(i)) == 0;
+        };
+        constexpr std::uint8_t every_bit = 255;
         for (std::size_t i = 0; i < set.colours.size(); ++i)
-            if (set.colours[i] && (clear.colours >> i & 1U) != 0 && clear.write_mask.at(i) == every_channel &&
+            if (set.colours[i] && (clear.colours >> i & 1U) != 0 && every_channel_that_is_written(i) &&
                 whole(*set.colours[i]))
                 needed_.erase(plane_of(*set.colours[i]));
         if (!set.depth) return;
@@ -102,9 +146,24 @@ class NeededPlanes {
         if (covers(to, size.width, size.height)) needed_.erase(plane_of(copy.to));
         needed_.insert(plane_of(copy.from));
     }
+    void before(const RecordedBlit& blit) {
+        const auto size = [&](const TargetSet::Target& target) {
+            return level_size(recording_.surfaces.at(target.surface), target.level);
+        };
+        const LevelSize from = size(blit.from), to = size(blit.to);
+        const pipeline::PixelRectangle& source = blit.source;
+        const bool within = source.x >= 0 && source.y >= 0 && std::int64_t{source.x} + source.width <= from.width &&
+                            std::int64_t{source.y} + source.height <= from.height;
+        if (within && covers(blit.destination, to.width, to.height) && covers(blit.scissor, to.width, to.height))
+            needed_.erase(plane_of(blit.to));
+        needed_.insert(plane_of(blit.from));
+    }
+
+    static constexpr std::uint8_t every_channel = 15;
 
     const Recording& recording_;
     std::set<SurfacePlane> written_, needed_;
+    std::map<SurfacePlane, std::uint8_t> channels_; ///< of colours that are written: bit 0 is red
 };
 
 std::size_t draws_in(const RecordedFrame& frame) {
@@ -171,6 +230,7 @@ Recording cut(const Recording& recording, const Cut& what) {
 
     Recording result = recording;
     result.frames = std::move(kept);
+    needed.forget_contents(result.surfaces);
     return compact(std::move(result));
 }
 

@@ -18,9 +18,10 @@ struct Cut {
 /// What a range of frames, or of draws within one frame, needs.
 ///
 /// Of earlier frames those commands stay, in front of the first frame, that make what is then read of a surface before
-/// it is wholly set. With `draws`, the other draws of the frame are left out, and so is all behind the last of them;
-/// clears and copies before it stay. The frame then shows what its last draw draws to, if that has a colour.
-/// Throws sim::InputError for a range that is empty or not there.
+/// it is wholly set. What surfaces hold in the beginning becomes 0 where it is set before it is read. With `draws`, the
+/// other draws of the frame are left out, and so is all behind the last of them; clears and copies before it stay. The
+/// frame then shows what its last draw draws to, if that has a colour. Throws sim::InputError for a range that is empty
+/// or not there.
 Recording cut(const Recording& recording, const Cut& what);
 
 /// Leaves out what no command names. Clears lose what their targets do not have, and go when nothing is left of them.

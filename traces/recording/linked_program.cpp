@@ -84,8 +84,6 @@ LinkedProgram::LinkedProgram(const RecordedProgram& program)
         const InterfaceVariable* output = output_for(vertex->program, input);
         if (output == nullptr)
             notes.push_back(fmt::format("program {}: nobody writes the varying {}: it is 0", name, input.name));
-        if (input.decorations.no_perspective)
-            notes.push_back(fmt::format("program {}: {} is interpolated with perspective", name, input.name));
         const bool alike =
             output == nullptr || (output->components == input.components && output->columns == input.columns &&
                                   output->elements == input.elements);

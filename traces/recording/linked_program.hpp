@@ -1,8 +1,8 @@
 // A vertex and a fragment shader of a recording, read, and the varyings between them in the vectors that the pipeline
 // carries.
 //
-// Modelled: varyings by name, else by location; flat ones. Not modelled: interpolation without perspective, at
-// centroids or samples, which is perspective-correct at the place that the rasterizer chooses.
+// Modelled: varyings by name, else by location; flat ones, and those without perspective. Not modelled: interpolation
+// at centroids or samples, which is at the place that the rasterizer chooses.
 #pragma once
 
 #include "traces/recording/recording.hpp"

@@ -37,7 +37,9 @@ pipeline::Frame lower_frames(const Recording& recording, const LowerOptions& opt
             frame.output_is_encoded &= recording.surfaces[target->surface].format != pipeline::SurfaceFormat::srgb8a8;
     frame.program = passes.program();
     if (options.kbuffer && frame.program == nullptr)
-        throw sim::InputError("--kbuffer: expected a draw that can go through it, found none");
+        throw sim::InputError(
+            fmt::format("--kbuffer: expected a draw that can go through it, found none{}",
+                        frame.notes.empty() ? " that blends" : fmt::format(" ({})", fmt::join(frame.notes, "; "))));
     PassGraph graph(std::move(frame));
     for (pipeline::SurfaceInfo& surface : passes.surfaces) graph.add_surface(std::move(surface));
     std::uint32_t number = 0;

@@ -1,8 +1,8 @@
 // Frames of the pipeline from what an application drew.
 //
 // Commands with the same targets, one after the other, are one pass. Clears of whole surfaces stay clears; those of
-// parts, and copies, are drawn, as GPUs do. What was recorded is not changed: what cannot be drawn as it is, is refused
-// or noted.
+// parts, copies and blits are drawn, as GPUs do. What was recorded is not changed: what cannot be drawn as it is, is
+// refused or noted.
 #pragma once
 
 #include "pipeline/frame.hpp"

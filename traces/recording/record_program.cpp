@@ -3,18 +3,17 @@
 #include "ropsim_build.hpp"
 #include "sim/check.hpp"
 #include "traces/glsl.hpp"
+#include "traces/record_module/stream.hpp"
 #include "traces/recording/import/import.hpp"
-#include "traces/recording/running_program.hpp"
+#include "traces/recording/virtual_display.hpp"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <memory>
-#include <poll.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <thread>
@@ -25,7 +24,6 @@ namespace traces {
 namespace {
 
 constexpr std::chrono::milliseconds interval{20}; ///< between looks at the program
-constexpr int display_patience_ms = 20'000;       ///< until an X server has started
 
 /// A file without a name, which another process opens by ropsim's number for it.
 class StreamFile {
@@ -68,50 +66,6 @@ void wait_for(RunningProgram& program, const std::atomic<bool>& stop) {
         std::this_thread::sleep_for(interval);
     }
 }
-
-bool has_display() {
-    for (const char* name : {"DISPLAY", "WAYLAND_DISPLAY"})
-        if (const char* value = std::getenv(name); value != nullptr && *value != '\0') return true;
-    return false;
-}
-
-/// An X server without a screen, where nothing else shows windows.
-class VirtualDisplay {
-  public:
-    explicit VirtualDisplay(const std::atomic<bool>& stop) {
-        std::array<int, 2> ends{};
-        if (::pipe2(ends.data(), O_CLOEXEC) != 0) throw sim::InputError("no pipe to Xvfb");
-        try {
-            server_.emplace(std::vector<std::string>{"Xvfb", "-displayfd", std::to_string(ends[1]), "-screen", "0",
-                                                     "2560x1600x24", "-nolisten", "tcp", "-noreset"},
-                            RunningProgram::Environment{}, ends[1]);
-            ::close(ends[1]);
-            read_number(ends[0], stop);
-        } catch (...) {
-            ::close(ends[0]);
-            throw;
-        }
-        ::close(ends[0]);
-    }
-    std::string name() const { return ":" + number_; }
-
-  private:
-    void read_number(int descriptor, const std::atomic<bool>& stop) {
-        for (int waited = 0; waited < display_patience_ms && !server_->ended(); waited += 20) {
-            if (stop) throw sim::Interrupted();
-            pollfd one{descriptor, POLLIN, 0};
-            if (::poll(&one, 1, 20) <= 0) continue;
-            char letter = 0;
-            if (::read(descriptor, &letter, 1) != 1) break;
-            if (letter == '\n') return;
-            number_ += letter;
-        }
-        throw sim::InputError("Xvfb: expected an X server to start");
-    }
-
-    std::optional<RunningProgram> server_;
-    std::string number_;
-};
 
 std::string module_path() {
     constexpr const char* file = "ropsim_record.so";
@@ -161,11 +115,14 @@ RecordedProgramRun record_program(const RecordRequest& request, const std::atomi
     }
     RunningProgram program(request.command, environment);
     wait_for(program, stop);
+    if (program.ended_with(record_stream::status_no_room))
+        throw sim::InputError(fmt::format("{}: expected room for all that is recorded (TMPDIR names another folder)",
+                                          std::filesystem::temp_directory_path().string()));
     recorded::ImportedStream stream = recorded::import_stream(file.bytes());
     const auto& frames = stream.recording.frames;
     if (std::all_of(frames.begin(), frames.end(), [](const RecordedFrame& frame) { return frame.commands.empty(); }))
         throw sim::InputError(complaint(request, stream, program.ended().value_or(""), lacks_display));
-    return {std::move(stream.recording), stream.context};
+    return {std::move(stream.recording), stream.context, stream.finished ? "" : program.ended().value_or("")};
 }
 
 RecordedProgramRun record_apitrace(const std::filesystem::path& file, RecordRequest request,

@@ -23,10 +23,12 @@ struct RecordRequest {
 struct RecordedProgramRun {
     Recording recording;
     std::string context; ///< OpenGL's version and the renderer
+    std::string ended;   ///< how the program ended before the last frame that was asked for ("with status 0"); or ""
 };
 
-/// Throws sim::InputError for a program that cannot be run, that ends without a frame that was wanted, and for what is
-/// missing, with the Debian package; sim::Interrupted once `stop` is set, with the program ended.
+/// Throws sim::InputError for a program that cannot be run, that ends without a frame that was wanted, for what is
+/// missing, with the Debian package, and where the folder for temporary files is too small; sim::Interrupted once
+/// `stop` is set, with the program ended.
 RecordedProgramRun record_program(const RecordRequest& request, const std::atomic<bool>& stop);
 
 /// Of an apitrace file, played by glretrace.

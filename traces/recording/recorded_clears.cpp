@@ -1,5 +1,5 @@
-// Clears and copies of a recording: a whole surface to the value that it is always cleared to stays a clear; the others
-// are drawn, as a triangle around the screen.
+// Clears, copies and blits of a recording: a whole surface to the value that it is always cleared to stays a clear; the
+// others are drawn, as a triangle around the screen.
 #include "pipeline/functional/surface_texel.hpp"
 #include "pipeline/vertex_program.hpp"
 #include "sim/check.hpp"
@@ -32,9 +32,22 @@ class ScreenTriangle final : public pipeline::VertexProgram {
     float z_;
 };
 
-bool covers(const std::optional<pipeline::PixelRectangle>& scissor, std::uint32_t width, std::uint32_t height) {
+bool covers_view(const std::optional<pipeline::PixelRectangle>& scissor, std::uint32_t width, std::uint32_t height) {
     return !scissor || (scissor->x <= 0 && scissor->y <= 0 && std::int64_t{scissor->x} + scissor->width >= width &&
                         std::int64_t{scissor->y} + scissor->height >= height);
+}
+
+/// What lies in both; of width or height 0: nothing.
+pipeline::PixelRectangle common_part(const pipeline::PixelRectangle& a, const pipeline::PixelRectangle& b) {
+    const auto overlap = [](std::int32_t at_a, std::uint32_t size_a, std::int32_t at_b, std::uint32_t size_b) {
+        const std::int64_t first = std::max(at_a, at_b);
+        const std::int64_t end = std::min(std::int64_t{at_a} + size_a, std::int64_t{at_b} + size_b);
+        return std::pair(static_cast<std::int32_t>(first),
+                         static_cast<std::uint32_t>(std::max<std::int64_t>(end - first, 0)));
+    };
+    const auto [x, width] = overlap(a.x, a.width, b.x, b.width);
+    const auto [y, height] = overlap(a.y, a.height, b.y, b.height);
+    return {x, y, width, height};
 }
 
 } // namespace
@@ -51,9 +64,9 @@ void RecordedPasses::add_screen_draw(const std::string& name, const RasterState&
 
 // What is stored into each target that is cleared as a whole. Stencil that nobody tests may hold anything.
 std::map<std::uint32_t, RecordedPasses::Texel> RecordedPasses::whole_clears(const RecordedClear& clear) const {
-    const TargetSet& targets = recording_.targets.at(clear.targets);
+    const TargetSet& targets = targets_.at(clear.targets);
     std::map<std::uint32_t, Texel> values;
-    if (!covers(clear.scissor, targets.width, targets.height)) return values;
+    if (!covers_view(clear.scissor, targets.width, targets.height)) return values;
     for (std::size_t i = 0; i < targets.colours.size(); ++i) {
         if ((clear.colours >> i & 1U) == 0 || !targets.colours[i] || clear.write_mask[i] != 15) continue;
         const std::uint32_t surface = targets.colours[i]->surface;
@@ -79,7 +92,7 @@ std::map<std::uint32_t, RecordedPasses::Texel> RecordedPasses::whole_clears(cons
 
 // A surface is cleared as a whole where it gets the value that it always gets; what is left of the clear is drawn.
 RecordedClear RecordedPasses::clear_whole(const RecordedClear& clear) {
-    const TargetSet& targets = recording_.targets.at(clear.targets);
+    const TargetSet& targets = targets_.at(clear.targets);
     RecordedClear left = clear;
     RecordedStep step;
     for (const auto& [surface, value] : whole_clears(clear)) {
@@ -129,36 +142,50 @@ void RecordedPasses::add(const RecordedClear& all) {
 }
 
 void RecordedPasses::add(const RecordedCopy& copy) {
-    const RecordedSurface& to = recording_.surfaces.at(copy.to.surface);
+    const pipeline::PixelRectangle& from = copy.rectangle;
+    RecordedBlit blit;
+    blit.name = copy.name;
+    blit.from = copy.from;
+    blit.to = copy.to;
+    blit.source = from;
+    blit.destination = {copy.to_x, copy.to_y, from.width, from.height};
+    blit.mirrored_y = copy.mirrored;
+    add(blit);
+}
+
+void RecordedPasses::add(const RecordedBlit& blit) {
+    const TargetSet::Target source = drawn_parts_.of(blit.from), target = drawn_parts_.of(blit.to);
+    const pipeline::SurfaceInfo &from = surfaces[source.surface], &to = surfaces[target.surface];
     const bool depths = has_depth(to.format);
-    const pipeline::SurfaceFormat from = recording_.surfaces.at(copy.from.surface).format;
-    if (depths != has_depth(from) || is_colour(to.format) != is_colour(from) || copy.from.surface == copy.to.surface)
+    if (depths != has_depth(from.format) || is_colour(to.format) != is_colour(from.format) ||
+        source.surface == target.surface)
         throw sim::InputError(
-            fmt::format("{}: expected a copy of colours or depths from one surface to another", copy.name));
+            fmt::format("{}: expected a copy of colours or depths from one surface to another", blit.name));
+    RasterState state;
+    state.scissor = common_part(blit.destination, blit.scissor.value_or(blit.destination));
+    if (state.scissor->width == 0 || state.scissor->height == 0) return;
     TargetSet targets;
     if (depths)
-        targets.depth = copy.to;
+        targets.depth = target;
     else
-        targets.colours = {copy.to};
+        targets.colours = {target};
     targets.width = to.width;
     targets.height = to.height;
     enter_run(~0U - copies_++); // one of its own
     open(targets, false);
-    RasterState state;
     state.culling = pipeline::FaceCulling::none;
-    state.scissor = {copy.to_x, copy.to_y, copy.rectangle.width, copy.rectangle.height};
     if (depths) state.depth = {.test = true, .write = true, .compare = pipeline::Compare::always};
     FragmentUse use;
-    const auto rows = static_cast<std::int32_t>(copy.rectangle.height);
-    use.copied =
-        CopiedTexels{.slot = slot_of(copy.from.surface),
-                     .level = copy.from.level,
-                     .plane = copy.from.plane,
-                     .from_x = copy.rectangle.x - copy.to_x,
-                     .from_row = copy.mirrored ? copy.rectangle.y + rows - 1 + copy.to_y : copy.rectangle.y - copy.to_y,
-                     .mirrored = copy.mirrored,
-                     .depths = depths};
-    add_screen_draw(copy.name, state, 0.0F, std::move(use));
+    use.copied = CopiedTexels{.slot = slot_of(source.surface),
+                              .level = source.level,
+                              .plane = source.plane,
+                              .source = blit.source,
+                              .destination = blit.destination,
+                              .mirrored_x = blit.mirrored_x,
+                              .mirrored_y = blit.mirrored_y,
+                              .linear = blit.linear,
+                              .depths = depths};
+    add_screen_draw(blit.name, state, 0.0F, std::move(use));
     close();
 }
 

@@ -16,14 +16,6 @@ namespace {
 
 using pipeline::RasterState;
 
-// What no pass writes can be read, too: it holds 0.
-pipeline::SurfaceInfo info_of(const RecordedSurface& recorded, std::size_t number) {
-    pipeline::SurfaceInfo info = surface_of(recorded);
-    info.name = fmt::format("{} {}", recorded.name.empty() ? "surface" : recorded.name, number);
-    if (info.contents == nullptr) info.contents = pipeline::make_contents(info, recorded.levels);
-    return info;
-}
-
 } // namespace
 
 std::shared_ptr<const LinkedProgram> RecordedPrograms::program(std::uint32_t number) {
@@ -49,16 +41,18 @@ std::vector<std::string> RecordedPrograms::notes() const {
 RecordedPasses::RecordedPasses(const Recording& recording, std::shared_ptr<const pipeline::Resources> resources,
                                std::uint32_t screen_geometry, const std::optional<KBufferChoice>& kbuffer)
     : recording_(recording),
+      drawn_parts_(recording),
       resources_(std::move(resources)),
       screen_geometry_(screen_geometry),
       programs_(recording),
       kbuffer_(kbuffer) {
     if (kbuffer) program_ = models::make_nodes(kbuffer->k);
-    for (std::size_t i = 0; i < recording.surfaces.size(); ++i) surfaces.push_back(info_of(recording.surfaces[i], i));
+    surfaces = drawn_parts_.surfaces();
+    for (const TargetSet& set : recording.targets) targets_.push_back(drawn_parts_.of(set));
     for (const RecordedFrame& frame : recording.frames)
         for (const RecordedCommand& command : frame.commands)
             if (const auto* draw = std::get_if<RecordedDraw>(&command))
-                if (const auto& depth = recording.targets.at(draw->targets).depth;
+                if (const auto& depth = targets_.at(draw->targets).depth;
                     depth && recording.states.at(draw->state).stencil.test)
                     stencil_tested_.insert(depth->surface);
 }
@@ -69,7 +63,7 @@ void RecordedPasses::add(const RecordedFrame& frame) {
     run_targets_.reset();
     for (const RecordedCommand& command : frame.commands) std::visit([this](const auto& one) { add(one); }, command);
     close();
-    const auto& colours = recording_.targets.at(frame.shown).colours;
+    const auto& colours = targets_.at(frame.shown).colours;
     if (!colours.empty() && colours.front()) steps.push_back({{}, {}, name_of(colours.front()->surface)});
 }
 
@@ -87,16 +81,16 @@ std::string RecordedPasses::pass_name() {
 
 void RecordedPasses::open(std::uint32_t targets, bool kbuffer) {
     if (open_ != nullptr && open_->number == targets && open_->kbuffer == kbuffer) return;
-    open(recording_.targets.at(targets), kbuffer);
+    open(targets_.at(targets), kbuffer);
     open_->number = targets;
 }
 
 void RecordedPasses::open(const TargetSet& targets, bool kbuffer) {
     close();
     const auto check = [this](const TargetSet::Target& target) {
-        if (target.level != 0 || target.plane != 0 || recording_.surfaces[target.surface].samples != 1)
-            throw sim::InputError(fmt::format("surface \"{}\": expected to be drawn to at level 0, plane 0, one sample",
-                                              name_of(target.surface)));
+        if (surfaces[target.surface].planes != 1)
+            throw sim::InputError(
+                fmt::format("surface \"{}\": expected to be drawn to with one sample", name_of(target.surface)));
     };
     open_ = std::make_shared<Open>();
     open_->targets = targets;
@@ -108,6 +102,7 @@ void RecordedPasses::open(const TargetSet& targets, bool kbuffer) {
     if (kbuffer) pass.kbuffer = kbuffer_surface;
     for (const auto& target : targets.colours) {
         if (target) check(*target);
+        if (target) expect_size_of(targets, target->surface);
         if (target) written_.insert(target->surface);
         if (!kbuffer) pass.targets.push_back(target ? name_of(target->surface) : std::string());
     }
@@ -121,9 +116,22 @@ void RecordedPasses::open(const TargetSet& targets, bool kbuffer) {
     pass.view->height = targets.height;
 }
 
+// Smaller ones draw to a part of others, which the pipeline's surfaces do not have.
+void RecordedPasses::expect_size_of(const TargetSet& targets, std::uint32_t surface) const {
+    const pipeline::SurfaceInfo& info = surfaces[surface];
+    if (info.width != targets.width || info.height != targets.height)
+        throw sim::InputError(
+            fmt::format("surface \"{}\": expected to be drawn to with others of its {} x {} pixels, got "
+                        "targets of {} x {}",
+                        info.name, info.width, info.height, targets.width, targets.height));
+}
+
 void RecordedPasses::close() {
     const std::shared_ptr<Open> open = std::exchange(open_, nullptr);
     if (open == nullptr || open->uses.empty()) return;
+    if (std::any_of(open->pass.states.begin(), open->pass.states.end(),
+                    [](const RasterState& state) { return state.depth.used() || state.stencil.test; }))
+        expect_size_of(open->targets, open->targets.depth.value().surface);
     for (const std::uint32_t surface : open->reads) open->pass.reads.push_back(name_of(surface));
     open->pass.shader = std::make_shared<const RecordedShader>(static_cast<std::uint32_t>(open->targets.colours.size()),
                                                                static_cast<std::uint32_t>(open->reads.size()),
@@ -157,7 +165,7 @@ void RecordedPasses::lay_nodes(const Open& open) {
 bool RecordedPasses::chosen(const RecordedDraw& draw) {
     const std::uint32_t number = draws_++;
     if (!kbuffer_) return false;
-    const auto& colours = recording_.targets.at(draw.targets).colours;
+    const auto& colours = targets_.at(draw.targets).colours;
     const RasterState& state = recording_.states.at(draw.state);
     std::string reason = not_for_nodes(state);
     if (reason.empty() && (colours.size() != 1 || !colours[0])) reason = "it has more or fewer targets than one";
@@ -220,14 +228,21 @@ std::vector<TextureBinding> RecordedPasses::bindings_of(const RecordedDraw& draw
     return bindings;
 }
 
-// A surface that the draw writes itself has no value to be read.
+// What the draw writes itself has no value to be read: of a surface that is no part of another.
 std::shared_ptr<const TextureTable> RecordedPasses::fragment_textures(const RecordedDraw& draw,
                                                                       const spirv::Program& program) {
     std::vector<TextureBinding> bindings = bindings_of(draw, program);
     std::erase_if(bindings, [this](const TextureBinding& binding) { return open_->writes(binding.surface); });
     std::vector<std::uint32_t> slots;
-    for (const TextureBinding& binding : bindings) slots.push_back(slot_of(binding.surface));
-    auto table = std::make_shared<const TextureTable>(program, bindings, recording_.samplers, slots);
+    std::vector<std::vector<pipeline::TexturePart>> parts;
+    for (const TextureBinding& binding : bindings) {
+        slots.push_back(slot_of(binding.surface));
+        std::vector<pipeline::TexturePart>& of_binding = parts.emplace_back();
+        for (const DrawnPart& part : drawn_parts_.parts_of(binding.surface))
+            if (part.level >= binding.base_level && part.level <= binding.last_level && !open_->writes(part.surface))
+                of_binding.push_back({part.level, part.plane, slot_of(part.surface)});
+    }
+    auto table = std::make_shared<const TextureTable>(program, bindings, recording_.samplers, slots, parts);
     note_unbound(draw, *table);
     return table;
 }
@@ -238,11 +253,15 @@ std::shared_ptr<const VertexTextures> RecordedPasses::vertex_textures(const Reco
     const std::vector<TextureBinding> bindings = bindings_of(draw, program);
     std::vector<pipeline::SurfaceInfo> infos;
     std::vector<std::uint32_t> slots;
-    for (const TextureBinding& binding : bindings) {
-        if (written_.contains(binding.surface))
+    const auto expect_unwritten = [&](std::uint32_t surface) {
+        if (written_.contains(surface))
             throw sim::InputError(
                 fmt::format("{}: expected a vertex shader that reads no surface that was drawn to, got {}", draw.name,
-                            name_of(binding.surface)));
+                            name_of(surface)));
+    };
+    for (const TextureBinding& binding : bindings) {
+        expect_unwritten(binding.surface);
+        for (const DrawnPart& part : drawn_parts_.parts_of(binding.surface)) expect_unwritten(part.surface);
         slots.push_back(static_cast<std::uint32_t>(infos.size()));
         infos.push_back(surfaces[binding.surface]);
     }
@@ -262,7 +281,9 @@ void RecordedPasses::add(const RecordedDraw& draw) {
     FragmentUse use;
     use.program = program;
     use.alpha_test = draw.alpha_test;
-    use.alpha_reference = draw.alpha_reference;
+    if (const auto& colours = open_->targets.colours; !colours.empty() && colours[0])
+        use.alpha_steps = pipeline::alpha_steps(surfaces[colours[0]->surface].format);
+    use.alpha_reference = in_alpha_steps(draw.alpha_reference, use.alpha_steps);
     if (kept) {
         const pipeline::BlendPart& blend = recording_.states[draw.state].blend[0].colour;
         use.node = NodeBlend{blend.source, blend.target};

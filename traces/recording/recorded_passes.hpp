@@ -2,6 +2,7 @@
 #pragma once
 
 #include "traces/pass_graph.hpp"
+#include "traces/recording/drawn_parts.hpp"
 #include "traces/recording/lower.hpp"
 #include "traces/recording/recorded_shader.hpp"
 #include "traces/recording/recorded_vertices.hpp"
@@ -48,7 +49,7 @@ class RecordedPasses {
 
     std::vector<RecordedStep> steps;
     std::vector<pipeline::Draw> draws;
-    std::vector<pipeline::SurfaceInfo> surfaces; ///< one for each of the recording, in its order
+    std::vector<pipeline::SurfaceInfo> surfaces; ///< those of DrawnParts
     std::vector<std::string> notes() const;
     /// What the k-buffer runs; null where no draw goes through it.
     std::shared_ptr<const pipeline::ModifyProgram> program() const { return kbuffer_used_ ? program_ : nullptr; }
@@ -59,10 +60,12 @@ class RecordedPasses {
     void add(const RecordedDraw& draw);
     void add(const RecordedClear& clear);
     void add(const RecordedCopy& copy);
+    void add(const RecordedBlit& blit);
     void enter_run(std::uint32_t targets);
     std::string pass_name();
     void open(std::uint32_t targets, bool kbuffer = false);
     void open(const TargetSet& targets, bool kbuffer);
+    void expect_size_of(const TargetSet& targets, std::uint32_t surface) const;
     void close();
     void lay_nodes(const Open& open);
     bool chosen(const RecordedDraw& draw);
@@ -80,6 +83,8 @@ class RecordedPasses {
     std::string name_of(std::uint32_t surface) const { return surfaces[surface].name; }
 
     const Recording& recording_;
+    DrawnParts drawn_parts_;
+    std::vector<TargetSet> targets_; ///< of the recording, as sets of `surfaces`
     std::shared_ptr<const pipeline::Resources> resources_;
     std::uint32_t screen_geometry_;
     RecordedPrograms programs_;

@@ -27,8 +27,8 @@ void set_vector(spirv::Quad& quad, const InterfaceVariable& variable, std::uint3
 pipeline::QuadTexels window_places(const FragmentUse& use, const ShaderInput& input) {
     pipeline::QuadTexels places;
     for (std::size_t lane = 0; lane < 4; ++lane) {
-        const auto row = static_cast<float>(input.y + lane / 2) + 0.5F;
-        places[lane] = {static_cast<float>(input.x + lane % 2) + 0.5F,
+        const auto row = static_cast<float>(input.y + (lane >> 1U)) + 0.5F;
+        places[lane] = {static_cast<float>(input.x + (lane & 1U)) + 0.5F,
                         use.top_row_first ? static_cast<float>(use.height) - row : row, input.depth[lane],
                         1.0F / input.varyings[0][lane].x};
     }
@@ -95,19 +95,54 @@ void take_outputs(const spirv::Quad& quad, const spirv::Program& program, std::u
 
 void test_alpha(const FragmentUse& use, ShaderOutput& output) {
     for (std::size_t lane = 0; lane < 4; ++lane)
-        if (!passes(use.alpha_test, output.colours[0][lane].a, use.alpha_reference)) output.alive &= ~(1U << lane);
+        if (!passes(use.alpha_test, in_alpha_steps(output.colours[0][lane].a, use.alpha_steps), use.alpha_reference))
+            output.alive &= ~(1U << lane);
 }
+
+/// Along one axis of a copy: where on the source the centre of a pixel lies, as a fraction of whole numbers.
+struct SourcePlace {
+    std::int64_t parts = 0, of_texel = 1;
+
+    SourcePlace(std::int32_t pixel, std::int32_t first_pixel, std::uint32_t pixels, std::int32_t first_texel,
+                std::uint32_t texels, bool mirrored)
+        : of_texel(std::int64_t{2} * pixels) {
+        const std::int64_t along = (std::int64_t{2} * (std::int64_t{pixel} - first_pixel) + 1) * texels;
+        parts = first_texel * of_texel + (mirrored ? of_texel * texels - along : along);
+    }
+    /// Rounded down.
+    std::int32_t texel() const { return static_cast<std::int32_t>(parts / of_texel - (parts % of_texel < 0 ? 1 : 0)); }
+    float share_of(std::uint32_t size) const {
+        return static_cast<float>(static_cast<double>(parts) / static_cast<double>(of_texel * size));
+    }
+};
 
 void copy_texels(const CopiedTexels& copied, const ShaderInput& input, pipeline::SurfaceAccess& surfaces,
                  ShaderOutput& output) {
     const pipeline::QuadPlaces at(input);
+    const pipeline::SurfaceInfo& info = surfaces.info(copied.slot);
+    const std::uint32_t width = info.width_of(copied.level), height = info.height_of(copied.level);
     pipeline::LaneIndices x{}, row{};
+    Lanes u{}, v{};
+    unsigned inside = 0;
     for (std::size_t lane = 0; lane < 4; ++lane) {
-        x[lane] = at.x[lane] + copied.from_x;
-        row[lane] = copied.from_row + (copied.mirrored ? -at.y[lane] : at.y[lane]);
+        const SourcePlace across(at.x[lane], copied.destination.x, copied.destination.width, copied.source.x,
+                                 copied.source.width, copied.mirrored_x);
+        const SourcePlace down(at.y[lane], copied.destination.y, copied.destination.height, copied.source.y,
+                               copied.source.height, copied.mirrored_y);
+        x[lane] = across.texel();
+        row[lane] = down.texel();
+        u[lane] = across.share_of(width);
+        v[lane] = down.share_of(height);
+        const bool on_surface = x[lane] >= 0 && row[lane] >= 0 && static_cast<std::uint32_t>(x[lane]) < width &&
+                                static_cast<std::uint32_t>(row[lane]) < height;
+        if (on_surface) inside |= 1U << lane;
     }
+    output.alive &= inside;
     surfaces.issue(1, input.pixels);
-    const pipeline::QuadTexels texels = surfaces.fetch(copied.slot, x, row, input.pixels, copied.plane, copied.level);
+    const pipeline::QuadTexels texels =
+        copied.linear ? surfaces.sample_level(copied.slot, {.linear = true}, u, v, input.pixels,
+                                              static_cast<float>(copied.level), copied.plane)
+                      : surfaces.fetch(copied.slot, x, row, input.pixels, copied.plane, copied.level);
     if (!copied.depths) output.colours[0] = texels;
     for (std::size_t lane = 0; copied.depths && lane < 4; ++lane) output.depth[lane] = texels[lane].r;
 }

@@ -1,14 +1,16 @@
 // The shader of a pass of a recording: for each draw its fragment shader, or what a clear or a copy stores.
 //
-// Modelled: built-in inputs of pixels and points, discard, depth, the alpha test behind it. Not modelled: early tests
-// that a shader asks for, values at single samples.
+// Modelled: built-in inputs of pixels and points, discard, depth, the alpha test behind it; texels of copies and blits.
+// Not modelled: early tests that a shader asks for, values at single samples.
 #pragma once
 
+#include "pipeline/functional/number_formats.hpp"
 #include "pipeline/shader.hpp"
 #include "traces/recording/kbuffer_choice.hpp"
 #include "traces/recording/linked_program.hpp"
 #include "traces/recording/textures.hpp"
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <mutex>
@@ -17,11 +19,13 @@
 
 namespace traces {
 
-/// Texels of another surface, at a fixed distance.
+/// Texels of a rectangle of another surface for the pixels of one, each side at most limits::largest_blit. What lies
+/// beyond the surface gives no fragment.
 struct CopiedTexels {
     std::uint32_t slot = 0, level = 0, plane = 0;
-    std::int32_t from_x = 0, from_row = 0; ///< of the texel for pixel (0, 0)
-    bool mirrored = false;                 ///< rows run backwards
+    pipeline::PixelRectangle source, destination;
+    bool mirrored_x = false, mirrored_y = false; ///< columns, or rows, run backwards
+    bool linear = false;                         ///< filtered; else the nearest texel
     bool depths = false;
 };
 
@@ -36,14 +40,23 @@ class QuadPool {
     std::vector<std::unique_ptr<spirv::Quad>> idle_;
 };
 
+/// What an alpha test compares: the nearest of the target's steps between 0 and 1, as its number; of 0 steps the alpha
+/// itself.
+inline float in_alpha_steps(float alpha, std::uint32_t steps) {
+    if (steps == 0) return alpha;
+    const float clamped = alpha > 0.0F ? std::min(alpha, 1.0F) : 0.0F;
+    return static_cast<float>(pipeline::round_even(static_cast<double>(clamped) * steps));
+}
+
 /// What the fragments of a draw run.
 struct FragmentUse {
     std::shared_ptr<const LinkedProgram> program; ///< null, or without a fragment shader: the colour, or the texels
     std::shared_ptr<const std::vector<std::uint32_t>> uniforms;
     std::shared_ptr<const TextureTable> textures;
     pipeline::Compare alpha_test = pipeline::Compare::always;
-    float alpha_reference = 0.0F;
-    std::uint32_t height = 0; ///< of the targets
+    std::uint32_t alpha_steps = 0; ///< of the target; 0: floats are compared
+    float alpha_reference = 0.0F;  ///< as in_alpha_steps() has it
+    std::uint32_t height = 0;      ///< of the targets
     bool top_row_first = true;
     bool front_is_clockwise = false; ///< as in the draw's state
     glm::vec4 colour{0.0F};

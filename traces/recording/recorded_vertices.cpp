@@ -109,8 +109,11 @@ RecordedVertices::RecordedVertices(std::shared_ptr<const LinkedProgram> program,
       mirrored_(mirrored) {
     const spirv::Program& shader = program_->vertex->program;
     shape_.varyings = static_cast<std::uint32_t>(program_->varyings.size());
-    for (std::uint32_t i = 0; i < shape_.varyings; ++i)
-        if (program_->varyings[i].input->decorations.flat) shape_.flat |= std::uint64_t{1} << i;
+    for (std::uint32_t i = 0; i < shape_.varyings; ++i) {
+        const spirv::Decorations& decorations = program_->varyings[i].input->decorations;
+        if (decorations.flat) shape_.flat |= std::uint64_t{1} << i;
+        if (decorations.no_perspective) shape_.linear |= std::uint64_t{1} << i;
+    }
     shape_.point_size = shader.built_in(built_in::point_size) != nullptr;
     if (const InterfaceVariable* distances = shader.built_in(built_in::clip_distance))
         shape_.clip_distances = static_cast<std::uint8_t>((1U << std::min(8U, distances->elements)) - 1U);
@@ -147,6 +150,7 @@ class RecordedVertices::Runner {
     /// Of the vertex that lane `lane` ran.
     void store(std::size_t lane, std::size_t vertex, const pipeline::ProgramVertices& made) const {
         made.positions[vertex] = vector(program_.built_in(built_in::position), 0, 4, lane);
+        if (!made.instructions.empty()) made.instructions[vertex] = quad_.instructions()[lane];
         if (of_.mirrored_) made.positions[vertex].y = -made.positions[vertex].y;
         if (!made.point_sizes.empty() && of_.shape_.point_size)
             made.point_sizes[vertex] = vector(program_.built_in(built_in::point_size), 0, 1, lane).x;

@@ -12,6 +12,7 @@
 
 #include "pipeline/draw.hpp"
 #include "pipeline/raster_state.hpp"
+#include "pipeline/shared_bytes.hpp"
 #include "pipeline/surface_format.hpp"
 #include "pipeline/texture_lookup.hpp"
 
@@ -43,7 +44,7 @@ struct RecordedSurface {
     std::uint32_t samples = 1;
     /// The bytes that it holds when the first frame begins, by level: planes, rows, texels, without gaps; of
     /// block-compressed formats 4x4 blocks in their place. A level without bytes holds 0.
-    std::vector<std::vector<std::byte>> levels = std::vector<std::vector<std::byte>>(1);
+    std::vector<pipeline::SharedBytes> levels = std::vector<pipeline::SharedBytes>(1);
 
     bool operator==(const RecordedSurface&) const = default;
 };
@@ -166,7 +167,20 @@ struct RecordedCopy {
     bool operator==(const RecordedCopy&) const = default;
 };
 
-using RecordedCommand = std::variant<RecordedDraw, RecordedClear, RecordedCopy>;
+/// A copy that scales: rectangles have any sizes, up to limits::largest_blit. What would come from beyond the source's
+/// surface, or go beyond the destination's, is left out.
+struct RecordedBlit {
+    std::string name;
+    TargetSet::Target from, to;
+    pipeline::PixelRectangle source, destination;
+    bool mirrored_x = false, mirrored_y = false;       ///< the first column, or row, of the source becomes the last one
+    bool linear = false;                               ///< filtered within the level of colours; else the nearest texel
+    std::optional<pipeline::PixelRectangle> scissor{}; ///< of the destination
+
+    bool operator==(const RecordedBlit&) const = default;
+};
+
+using RecordedCommand = std::variant<RecordedDraw, RecordedClear, RecordedCopy, RecordedBlit>;
 
 struct RecordedFrame {
     std::uint32_t number = 0; ///< of the application's frames, from 0; they grow

@@ -99,6 +99,8 @@ void check_state(const pipeline::RasterState& state, const RecordedPart& part) {
     part.require(!state.viewport || pipeline::is_usable(*state.viewport),
                  "a viewport of 1 to {} pixels a side, at most {} away", pipeline::largest_viewport,
                  pipeline::farthest_viewport);
+    part.require(pipeline::is_usable(state.depth), "a depth range within 0 to 1, got {} to {}", state.depth.range_near,
+                 state.depth.range_far);
     for (const std::uint8_t mask : state.write_mask) part.require(mask < 16, "a write mask below 16, got {}", mask);
 }
 
@@ -232,6 +234,22 @@ class NumberCheck {
         part.require(pipeline::is_colour(from.format) == pipeline::is_colour(to.format),
                      "colours to colours, or depths to depths, got {} to {}", pipeline::info_of(from.format).name,
                      pipeline::info_of(to.format).name);
+    }
+
+    void check_command(const RecordedBlit& blit, const RecordedPart& part) const {
+        const RecordedSurface &from = check_target(blit.from, part), &to = check_target(blit.to, part);
+        const auto good = [](std::int32_t begin, std::uint32_t size) {
+            constexpr std::int64_t largest = limits::largest_blit;
+            return size >= 1 && size <= largest && begin >= -largest && begin <= largest;
+        };
+        for (const pipeline::PixelRectangle& one : {blit.source, blit.destination})
+            part.require(good(one.x, one.width) && good(one.y, one.height),
+                         "rectangles of 1 to {0} texels a side, at most {0} away, got {1} x {2} at ({3}, {4})",
+                         limits::largest_blit, one.width, one.height, one.x, one.y);
+        part.require(pipeline::is_colour(from.format) == pipeline::is_colour(to.format) &&
+                         (pipeline::is_colour(to.format) || !blit.linear),
+                     "colours to colours, or unfiltered depths to depths, got {} to {}",
+                     pipeline::info_of(from.format).name, pipeline::info_of(to.format).name);
     }
 
     static void check_inside(const pipeline::PixelRectangle& texels, const RecordedSurface& surface,

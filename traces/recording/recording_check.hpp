@@ -11,6 +11,7 @@ namespace limits {
 inline constexpr std::uint32_t largest_surface = 16384;   ///< texels along a side
 inline constexpr std::uint32_t most_layers = 2048;        ///< or slices (OpenGL 4.5, table 23.53)
 inline constexpr std::uint32_t longest_buffer = 1U << 27; ///< texels
+inline constexpr std::uint32_t largest_blit = 1U << 16;   ///< texels along a side, or away, of either rectangle
 inline constexpr std::uint32_t most_module_words = 1U << 20;
 inline constexpr std::uint32_t most_commands = 1U << 20; ///< of all frames
 inline constexpr std::uint32_t most_instances = 1U << 20;

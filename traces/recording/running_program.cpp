@@ -26,7 +26,8 @@ constexpr std::chrono::milliseconds patience{200}; ///< before a program is kill
 int become(const std::vector<char*>& arguments, const std::vector<char*>& environment, int kept, int told) {
     ::setpgid(0, 0);
     ::prctl(PR_SET_PDEATHSIG, SIGKILL); // whatever happens to ropsim, the program does not go on alone
-    for (const int number : {SIGINT, SIGTERM, SIGALRM, SIGPIPE, SIGXFSZ}) std::signal(number, SIG_DFL);
+    // SIGXFSZ stays ignored: what cannot be recorded for lack of room ends with words, not with a signal.
+    for (const int number : {SIGINT, SIGTERM, SIGALRM, SIGPIPE}) std::signal(number, SIG_DFL);
     ::dup2(STDERR_FILENO, STDOUT_FILENO);
     if (kept >= 0) ::fcntl(kept, F_SETFD, 0);
     ::fcntl(told, F_SETFD, FD_CLOEXEC);
@@ -50,7 +51,7 @@ std::vector<std::string> with_environment(const RunningProgram::Environment& add
         for (const auto& [other, value] : added) replaced = replaced || other == name;
         if (!replaced) result.push_back(text);
     }
-    for (const auto& [name, value] : added) result.push_back(name + "=" + value);
+    for (const auto& [name, value] : added) result.push_back(fmt::format("{}={}", name, value));
     return result;
 }
 
@@ -66,9 +67,9 @@ std::string find_program(const std::string& name) {
     const char* const path = std::getenv("PATH");
     std::istringstream folders(path == nullptr ? "/usr/bin:/bin" : path);
     for (std::string folder; std::getline(folders, folder, ':');)
-        if (const std::string file = folder + "/" + name; ::access(file.c_str(), X_OK) == 0) return file;
+        if (std::string file = fmt::format("{}/{}", folder, name); ::access(file.c_str(), X_OK) == 0) return file;
     // Debian puts games where root has no path to.
-    if (const std::string file = "/usr/games/" + name; ::access(file.c_str(), X_OK) == 0) return file;
+    if (std::string file = "/usr/games/" + name; ::access(file.c_str(), X_OK) == 0) return file;
     return "";
 }
 
@@ -101,13 +102,17 @@ RunningProgram::~RunningProgram() {
          waited += std::chrono::milliseconds(10))
         std::this_thread::sleep_for(std::chrono::milliseconds(10));
     ::kill(-process_, SIGKILL);
-    if (!ended_) ::waitpid(process_, nullptr, 0);
+    if (!status_) ::waitpid(process_, nullptr, 0);
 }
 
 std::optional<std::string> RunningProgram::ended() {
     int status = 0;
-    if (!ended_ && ::waitpid(process_, &status, WNOHANG) == process_) ended_ = words_of(status);
-    return ended_;
+    if (!status_ && ::waitpid(process_, &status, WNOHANG) == process_) status_ = status;
+    return status_ ? std::optional(words_of(*status_)) : std::nullopt;
+}
+
+bool RunningProgram::ended_with(int status) {
+    return ended() && WIFEXITED(*status_) && WEXITSTATUS(*status_) == status;
 }
 
 } // namespace traces

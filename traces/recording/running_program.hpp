@@ -26,10 +26,12 @@ class RunningProgram {
 
     /// How it ended, in words ("with status 1"); nothing: it runs.
     std::optional<std::string> ended();
+    /// It ended by itself with this exit status.
+    bool ended_with(int status);
 
   private:
     pid_t process_ = -1;
-    std::optional<std::string> ended_;
+    std::optional<int> status_; ///< as waitpid() gives it
 };
 
 } // namespace traces

@@ -73,8 +73,9 @@ pipeline::SurfaceInfo surface_of(const RecordedSurface& surface) {
 }
 
 TextureTable::TextureTable(const spirv::Program& program, std::span<const TextureBinding> bindings,
-                           std::span<const RecordedSampler> samplers, std::span<const std::uint32_t> slots) {
-    CHECK(slots.size() == bindings.size());
+                           std::span<const RecordedSampler> samplers, std::span<const std::uint32_t> slots,
+                           std::span<const std::vector<pipeline::TexturePart>> parts) {
+    CHECK(slots.size() == bindings.size() && (parts.empty() || parts.size() == bindings.size()));
     for (const spirv::TextureVariable& variable : program.textures) {
         std::vector<Entry>& elements = entries_.emplace_back(variable.elements);
         for (std::size_t i = 0; i < bindings.size(); ++i) {
@@ -88,7 +89,7 @@ TextureTable::TextureTable(const spirv::Program& program, std::span<const Textur
             entry.view = {slots[i],           texture_kind(image.dimension),
                           image.arrayed,      image.multisampled,
                           binding.base_level, binding.last_level,
-                          binding.swizzle};
+                          binding.swizzle,    parts.empty() ? std::vector<pipeline::TexturePart>() : parts[i]};
         }
         for (std::size_t element = 0; element < elements.size(); ++element)
             if (!elements[element].bound)

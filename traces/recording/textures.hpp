@@ -32,8 +32,10 @@ class TextureTable {
 
     /// The shader knows the surface of bindings[i] as slots[i] of its SurfaceAccess. Of several bindings of a variable
     /// the last one counts; those of variables that the program does not have do not matter.
+    /// @param parts of the surface of each binding that other slots have; empty: none
     TextureTable(const spirv::Program& program, std::span<const TextureBinding> bindings,
-                 std::span<const RecordedSampler> samplers, std::span<const std::uint32_t> slots);
+                 std::span<const RecordedSampler> samplers, std::span<const std::uint32_t> slots,
+                 std::span<const std::vector<pipeline::TexturePart>> parts = {});
 
     const Entry& at(std::uint32_t texture, std::uint32_t element) const { return entries_[texture][element]; }
     /// "name" or "name[2]" of all without a binding, in the program's order.

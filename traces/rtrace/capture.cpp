@@ -3,10 +3,8 @@
 #include "traces/camera.hpp"
 #include "traces/recording/lower.hpp"
 #include "traces/trace.hpp"
+#include "traces/user_programs.hpp"
 
-#include "models/programs/language/user_program.hpp"
-
-#include <algorithm>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -15,22 +13,27 @@ namespace traces {
 namespace {
 
 // A trace that named a file would not be self-contained, and would have it read by whoever replays it.
-void take_in_programs(const Workload& workload, WorkloadOptions& options) {
-    for (const std::string& name : workload.program_parameters) {
-        const auto found = options.values->find(name);
-        if (found != options.values->end() && found->is_string())
-            *found = models::with_program_text(found->get<std::string>());
-    }
+void take_in_programs(const Workload& workload, sim::JsonValue& parameters) {
+    for (const ProgramParameter& name : workload.program_parameters)
+        parameters[name.program] =
+            self_contained(parameters[name.program].get<std::string>(), parameters[name.k].get<std::uint32_t>(),
+                           parameters[name.opacity].get<float>());
+}
+
+void leave_out_maps(pipeline::Resources& resources) {
+    resources.maps.clear();
+    for (pipeline::Material& material : resources.materials) material.maps = {};
 }
 
 void refuse_program_files(const Workload& workload, const WorkloadOptions& options, const std::string& place) {
-    for (const std::string& name : workload.program_parameters) {
-        const auto found = options.values->find(name);
+    for (const ProgramParameter& name : workload.program_parameters) {
+        const auto found = options.values->find(name.program);
         if (found == options.values->end() || !found->is_string()) continue;
         const auto program = found->get<std::string>();
-        if (models::is_program_file(program))
-            throw sim::InputError(fmt::format(
-                "{}: parameter {}: expected a program's text, got the name of a file, '{}'", place, name, program));
+        if (is_program_file(program))
+            throw sim::InputError(
+                fmt::format("{}: parameter {}: expected a program's text, got the name of a file, '{}'", place,
+                            name.program, program));
     }
 }
 
@@ -49,17 +52,19 @@ Trace capture(const CaptureRequest& request) {
     Trace trace;
     CapturedFrame& frame = trace.frame;
     const Workload& workload = workload_named(request.workload);
-    WorkloadOptions options = WorkloadOptions::of(request.settings);
+    const WorkloadOptions options = WorkloadOptions::of(request.settings);
     frame.workload = request.workload;
     frame.options = options.values->dump();
-    take_in_programs(workload, options);
-    frame.parameters = workload.all_parameters(options)->dump();
+    sim::JsonValue parameters = workload.all_parameters(options);
+    take_in_programs(workload, parameters);
+    frame.parameters = parameters->dump();
     trace.scene = load_scene(request.scene);
     trace.metadata = {request.writer, request.name.empty() ? trace.scene.name : request.name, request.licence,
                       trace.scene.name, trace.scene.hash};
     frame.camera = request.camera;
     frame.view = make_view(trace.scene, request.camera, request.width, request.height, &frame.notes);
     frame.view.samples = request.samples;
+    if (!workload.reads_maps) leave_out_maps(*trace.scene.resources);
     trace.scene.resources->read_textures();
     frame_of(trace);
     return trace;

@@ -41,9 +41,9 @@ struct ChunkType {
 namespace chunk {
 inline constexpr ChunkType metadata = "META", scene = "SCEN", buffers = "BUFS", geometries = "GEOM", textures = "TEXS",
                            materials = "MATS", draws = "DRAW", cameras = "CAMS", lights = "LITE", captured = "CAPT",
-                           surfaces = "SURF", samplers = "SAMP", programs = "SHDR", values = "VARS", bindings = "BIND",
-                           states = "RAST", targets = "TARG", frames = "FRAM", not_recorded = "OMIT", blob = "BLOB",
-                           done = "DONE";
+                           maps = "MAPS", surfaces = "SURF", samplers = "SAMP", programs = "SHDR", values = "VARS",
+                           bindings = "BIND", states = "RAST", depth_ranges = "DRNG", targets = "TARG", frames = "FRAM",
+                           not_recorded = "OMIT", blob = "BLOB", done = "DONE";
 } // namespace chunk
 
 /// Bits of ChunkHead::flags; the others are 0.

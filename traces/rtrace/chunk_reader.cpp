@@ -1,6 +1,7 @@
 #include "traces/rtrace/chunk_reader.hpp"
 
 #include "sim/check.hpp"
+#include "sim/large_pages.hpp"
 #include "traces/rtrace/little_endian.hpp"
 
 #include <algorithm>
@@ -118,9 +119,9 @@ void ChunkReader::repeat(std::uint64_t bytes, std::string_view what) {
     repeated_bytes_ += bytes;
 }
 
-// Hands pieces of the content to `take`.
-template <class Take>
-void ChunkReader::decompress(Take take) {
+// Decompresses into `room(made, bytes)`, memory for what follows the first `made` bytes; hands each piece to `take`.
+template <class Room, class Take>
+void ChunkReader::decompress(Room room, Take take) {
     const std::uint64_t begin = head_.offset + chunk_head_bytes;
     CHECK(ZSTD_isError(ZSTD_DCtx_reset(zstd_.get(), ZSTD_reset_session_only)) == 0);
     std::uint64_t at = begin, made = 0;
@@ -132,14 +133,14 @@ void ChunkReader::decompress(Take take) {
             read(at, std::span(stored_).first(in.size));
             at += in.size;
         }
-        const std::size_t room = std::min<std::uint64_t>(piece_bytes, head_.content_bytes - made);
-        ZSTD_outBuffer out{piece_.data(), room, 0};
+        const std::span<std::byte> to = room(made, std::min<std::uint64_t>(piece_bytes, head_.content_bytes - made));
+        ZSTD_outBuffer out{to.data(), to.size(), 0};
         const std::size_t before = in.pos;
         hint = ZSTD_decompressStream(zstd_.get(), &out, &in);
         require(ZSTD_isError(hint) == 0, begin, "one zstd frame of {} bytes of content, got: {}", head_.content_bytes,
                 ZSTD_getErrorName(hint));
         made += out.pos;
-        take(std::span<const std::byte>(piece_).first(out.pos));
+        take(to.first(out.pos));
         const bool stuck = out.pos == 0 && in.pos == before && (in.pos < in.size || at == head_.end());
         require(hint == 0 || !stuck, begin, "one zstd frame of {} bytes of content in {} bytes", head_.content_bytes,
                 head_.stored_bytes);
@@ -148,23 +149,23 @@ void ChunkReader::decompress(Take take) {
             "one zstd frame of {} bytes of content in {} bytes", head_.content_bytes, head_.stored_bytes);
 }
 
-template <class Take>
-void ChunkReader::decode(Take take) {
+template <class Room>
+void ChunkReader::decode(Room room) {
     const std::unique_ptr<XXH3_state_t, FreeHash> hash(XXH3_createState());
     if (hash == nullptr) throw std::bad_alloc();
     CHECK(XXH3_128bits_reset(hash.get()) == XXH_OK);
-    const auto hashed = [&](std::span<const std::byte> piece) {
+    const auto take = [&](std::span<const std::byte> piece) {
+        if (piece.empty()) return;
         CHECK(XXH3_128bits_update(hash.get(), piece.data(), piece.size()) == XXH_OK);
-        take(piece);
     };
     const std::uint64_t begin = head_.offset + chunk_head_bytes;
     if (head_.compressed()) {
-        decompress(hashed);
+        decompress(room, take);
     } else {
         for (std::uint64_t at = begin; at < head_.end();) {
-            const auto piece = std::span(piece_).first(std::min<std::uint64_t>(piece_bytes, head_.end() - at));
+            const std::span<std::byte> piece = room(at - begin, std::min<std::uint64_t>(piece_bytes, head_.end() - at));
             read(at, piece);
-            hashed(piece);
+            take(piece);
             at += piece.size();
         }
     }
@@ -177,12 +178,21 @@ void ChunkReader::decode(Take take) {
 std::vector<std::byte> ChunkReader::content() {
     std::vector<std::byte> bytes;
     bytes.reserve(head_.content_bytes); // not touched before there is something to write
-    decode([&](std::span<const std::byte> piece) { bytes.insert(bytes.end(), piece.begin(), piece.end()); });
+    sim::prefer_large_pages(bytes.data(), head_.content_bytes);
+    decode([&](std::uint64_t made, std::size_t more) {
+        bytes.resize(made + more);
+        return std::span(bytes).subspan(made);
+    });
     return bytes;
 }
 
+void ChunkReader::read_content(std::span<std::byte> to) {
+    CHECK(to.size() == head_.content_bytes);
+    decode([&](std::uint64_t made, std::size_t more) { return to.subspan(made, more); });
+}
+
 void ChunkReader::check_content() {
-    decode([](std::span<const std::byte>) {});
+    decode([&](std::uint64_t, std::size_t more) { return std::span(piece_).first(more); });
 }
 
 } // namespace traces::rtrace

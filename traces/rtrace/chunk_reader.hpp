@@ -29,6 +29,8 @@ class ChunkReader {
     std::optional<ChunkHead> next();
     /// The content of the chunk that next() gave, decompressed and held against its name.
     std::vector<std::byte> content();
+    /// The same, into ChunkHead::content_bytes of memory.
+    void read_content(std::span<std::byte> to);
     /// The same, kept nowhere.
     void check_content();
     /// So many bytes are wanted a second time, for `what`.
@@ -43,10 +45,10 @@ class ChunkReader {
 
   private:
     void read(std::uint64_t at, std::span<std::byte> bytes) const;
-    template <class Take>
-    void decode(Take take);
-    template <class Take>
-    void decompress(Take take);
+    template <class Room>
+    void decode(Room room);
+    template <class Room, class Take>
+    void decompress(Room room, Take take);
 
     std::string name_;
     int descriptor_ = -1;

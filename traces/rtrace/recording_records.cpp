@@ -31,8 +31,8 @@ constexpr std::array<Code<Swizzle>, 6> swizzles{{{Swizzle::red, "red"},
                                                  {Swizzle::alpha, "alpha"},
                                                  {Swizzle::zero, "0"},
                                                  {Swizzle::one, "1"}}};
-constexpr std::array<std::string_view, 3> commands{"draw", "clear", "copy"};
-static_assert(std::is_same_v<RecordedCommand, std::variant<RecordedDraw, RecordedClear, RecordedCopy>>,
+constexpr std::array<std::string_view, 4> commands{"draw", "clear", "copy", "blit"};
+static_assert(std::is_same_v<RecordedCommand, std::variant<RecordedDraw, RecordedClear, RecordedCopy, RecordedBlit>>,
               "commands have their codes in this order: new ones go to the end");
 
 constexpr std::size_t least_command_bytes = 34; ///< of a clear without a name
@@ -103,11 +103,25 @@ void visit_copy(Fields& fields, RecordedCopy& copy) {
     fields.flag("mirrored", copy.mirrored);
 }
 
+void visit_blit(Fields& fields, RecordedBlit& blit) {
+    fields.text("name", blit.name);
+    fields.part("from", [&] { visit_target(fields, blit.from); });
+    fields.part("to", [&] { visit_target(fields, blit.to); });
+    fields.part("source", [&] { visit_rectangle(fields, blit.source); });
+    fields.part("destination", [&] { visit_rectangle(fields, blit.destination); });
+    fields.flag("mirrored x", blit.mirrored_x);
+    fields.flag("mirrored y", blit.mirrored_y);
+    fields.flag("linear", blit.linear);
+    fields.optional("scissor", blit.scissor,
+                    [&](pipeline::PixelRectangle& scissor) { visit_rectangle(fields, scissor); });
+}
+
 struct CommandFields {
     Fields& fields;
     void operator()(RecordedDraw& draw) const { visit_draw(fields, draw); }
     void operator()(RecordedClear& clear) const { visit_clear(fields, clear); }
     void operator()(RecordedCopy& copy) const { visit_copy(fields, copy); }
+    void operator()(RecordedBlit& blit) const { visit_blit(fields, blit); }
 };
 
 } // namespace
@@ -122,7 +136,7 @@ void visit_surfaces(Fields& fields, Document& document) {
         fields.whole("height", surface.height);
         fields.whole("depth", surface.depth);
         fields.whole("samples", surface.samples);
-        fields.list("level", surface.levels, 1, [&](std::vector<std::byte>&, std::size_t k) {
+        fields.list("level", surface.levels, 1, [&](pipeline::SharedBytes&, std::size_t k) {
             visit_blob_if_any(fields, "contents", document, {Place::Kind::surface_level, i, k});
         });
     });

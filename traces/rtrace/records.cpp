@@ -94,25 +94,58 @@ void visit_geometries(Fields& fields, Document& document) {
     });
 }
 
+void visit_texture(Fields& fields, Document& document, pipeline::Texture& texture, Place::Kind kind, std::size_t i) {
+    TexelFormat format = TexelFormat::rgba8;
+    fields.text("name", texture.name);
+    fields.choice("format", format, texel_formats);
+    fields.flag("sRGB", texture.srgb);
+    fields.choice("wrap u", texture.wrap_u, wraps);
+    fields.choice("wrap v", texture.wrap_v, wraps);
+    fields.choice("minification", texture.min_filter, filters);
+    fields.choice("magnification", texture.mag_filter, filters);
+    fields.vector("border", texture.border);
+    fields.list("level", texture.levels, 32, [&](pipeline::Texture::Level& level, std::size_t k) {
+        fields.whole("width", level.width);
+        fields.whole("height", level.height);
+        fields.blob("texels", document.blobs[{kind, i, k}]);
+    });
+}
+
 void visit_textures(Fields& fields, Document& document) {
     auto& textures = document.trace.scene.resources->textures;
     fields.list("texture", textures, 30, [&](pipeline::Texture& texture, std::size_t i) {
-        TexelFormat format = TexelFormat::rgba8;
-        fields.text("name", texture.name);
-        fields.choice("format", format, texel_formats);
-        fields.flag("sRGB", texture.srgb);
-        fields.choice("wrap u", texture.wrap_u, wraps);
-        fields.choice("wrap v", texture.wrap_v, wraps);
-        fields.choice("minification", texture.min_filter, filters);
-        fields.choice("magnification", texture.mag_filter, filters);
-        fields.vector("border", texture.border);
-        fields.list("level", texture.levels, 32, [&](pipeline::Texture::Level& level, std::size_t k) {
-            fields.whole("width", level.width);
-            fields.whole("height", level.height);
-            fields.blob("texels", document.blobs[{Place::Kind::texture_level, i, k}]);
-        });
+        visit_texture(fields, document, texture, Place::Kind::texture_level, i);
     });
 }
+
+void visit_map(Fields& fields, std::string_view name, pipeline::MaterialMap& map) {
+    fields.part(name, [&] {
+        fields.integer("map", map.texture, -1, INT32_MAX);
+        fields.whole("texcoord", map.texcoord);
+        fields.matrix("uv transform", map.uv_transform);
+    });
+}
+
+void visit_maps(Fields& fields, Document& document) {
+    auto& textures = document.trace.scene.resources->maps;
+    fields.list("map", textures, 30, [&](pipeline::LateTexture& map, std::size_t i) {
+        visit_texture(fields, document, map.texture, Place::Kind::map_level, i);
+    });
+    fields.list("maps of material", document.maps, 196, [&](NumberedMaps& of, std::size_t) {
+        fields.whole("material", of.material);
+        visit_map(fields, "normal", of.maps.normal);
+        visit_map(fields, "roughness", of.maps.roughness);
+        visit_map(fields, "specular", of.maps.specular);
+        visit_map(fields, "emissive", of.maps.emissive);
+        fields.number("normal scale", of.maps.normal_scale);
+        fields.number("metallic factor", of.maps.metallic_factor);
+        fields.number("roughness factor", of.maps.roughness_factor);
+        fields.number("specular factor", of.maps.specular_factor);
+        fields.vector("emissive factor", of.maps.emissive_factor);
+    });
+}
+
+bool has_maps(const Document& document) { return !document.maps.empty(); }
 
 void visit_materials(Fields& fields, Document& document) {
     auto& materials = document.trace.scene.resources->materials;
@@ -191,7 +224,7 @@ void visit_captured(Fields& fields, Document& document) {
 }
 
 using Of = Record::Of;
-constexpr std::array<Record, 19> all{{{Of::both, chunk::metadata, visit_metadata},
+constexpr std::array<Record, 21> all{{{Of::both, chunk::metadata, visit_metadata},
                                       {Of::captured, chunk::scene, visit_scene},
                                       {Of::both, chunk::buffers, visit_buffers},
                                       {Of::both, chunk::geometries, visit_geometries},
@@ -201,12 +234,14 @@ constexpr std::array<Record, 19> all{{{Of::both, chunk::metadata, visit_metadata
                                       {Of::captured, chunk::cameras, visit_cameras},
                                       {Of::captured, chunk::lights, visit_lights},
                                       {Of::captured, chunk::captured, visit_captured},
+                                      {Of::captured, chunk::maps, visit_maps, has_maps},
                                       {Of::recorded, chunk::surfaces, visit_surfaces},
                                       {Of::recorded, chunk::samplers, visit_samplers},
                                       {Of::recorded, chunk::programs, visit_programs},
                                       {Of::recorded, chunk::values, visit_values},
                                       {Of::recorded, chunk::bindings, visit_bindings},
                                       {Of::recorded, chunk::states, visit_states},
+                                      {Of::recorded, chunk::depth_ranges, visit_depth_ranges, has_depth_ranges},
                                       {Of::recorded, chunk::targets, visit_targets},
                                       {Of::recorded, chunk::frames, visit_frames},
                                       {Of::recorded, chunk::not_recorded, visit_not_recorded}}};
@@ -221,6 +256,8 @@ std::string Place::text() const {
         return fmt::format("buffer {}", i);
     case Kind::texture_level:
         return fmt::format("texture {} level {}", i, level);
+    case Kind::map_level:
+        return fmt::format("map {} level {}", i, level);
     case Kind::instances:
         return fmt::format("the matrices of draw {}", i);
     case Kind::surface_level:
@@ -241,6 +278,8 @@ ChunkType Place::named_in() const {
         return chunk::buffers;
     case Kind::texture_level:
         return chunk::textures;
+    case Kind::map_level:
+        return chunk::maps;
     case Kind::instances:
         return chunk::draws;
     case Kind::surface_level:

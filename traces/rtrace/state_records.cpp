@@ -3,6 +3,8 @@
 
 #include "traces/rtrace/records.hpp"
 
+#include <algorithm>
+
 namespace traces::rtrace {
 
 namespace {
@@ -92,6 +94,10 @@ void visit_stencil_face(Fields& fields, pipeline::StencilFace& face) {
     fields.choice("passes", face.passes, stencil_operations);
 }
 
+bool has_depth_range(const pipeline::RasterState& state) {
+    return state.depth.range_near != 0.0F || state.depth.range_far != 1.0F;
+}
+
 void visit_state(Fields& fields, pipeline::RasterState& state) {
     const auto rectangle = [&](pipeline::PixelRectangle& one) { visit_rectangle(fields, one); };
     fields.part("depth", [&] { visit_depth_state(fields, state.depth); });
@@ -132,6 +138,34 @@ void visit_rectangle(Fields& fields, pipeline::PixelRectangle& rectangle) {
 void visit_states(Fields& fields, Document& document) {
     fields.list("state", document.trace.recording->states, 51,
                 [&](pipeline::RasterState& state, std::size_t) { visit_state(fields, state); });
+}
+
+bool has_depth_ranges(const Document& document) {
+    const std::vector<pipeline::RasterState>& states = document.trace.recording->states;
+    return std::any_of(states.begin(), states.end(), has_depth_range);
+}
+
+// Of the states that were visited before, in which those without one have the usual range already.
+void visit_depth_ranges(Fields& fields, Document& document) {
+    struct Range {
+        std::uint32_t state = 0;
+        float near = 0.0F, far = 1.0F;
+    };
+    std::vector<pipeline::RasterState>& states = document.trace.recording->states;
+    const auto count = static_cast<std::uint32_t>(states.size());
+    std::vector<Range> ranges;
+    for (std::uint32_t i = 0; i < count; ++i)
+        if (has_depth_range(states[i])) ranges.push_back({i, states[i].depth.range_near, states[i].depth.range_far});
+    const auto visit = [&](Range& range, std::size_t) {
+        fields.whole("state", range.state, 0U, count - 1);
+        fields.number("near", range.near);
+        fields.number("far", range.far);
+    };
+    fields.list("depth range", ranges, 12, visit, count);
+    for (const Range& range : ranges) {
+        states[range.state].depth.range_near = range.near;
+        states[range.state].depth.range_far = range.far;
+    }
 }
 
 } // namespace traces::rtrace

@@ -94,6 +94,7 @@ void TraceReader::await(const BlobName& blob, const Place& place) {
     if (awaited.places.empty()) {
         awaited.bytes = blob.bytes;
         awaited.named_at = here;
+        if (place.kind == Place::Kind::surface_level) shared_left_ += blob.bytes;
     } else {
         file_.repeat(blob.bytes, place.text());
     }
@@ -114,9 +115,26 @@ void TraceReader::read_blob() {
     awaited_.erase(found);
     file_.require(awaited.bytes == head.content_bytes, head.offset, "a blob of {} bytes for {}, got {}", awaited.bytes,
                   awaited.places.front().text(), head.content_bytes);
+    const bool is_shared = std::any_of(awaited.places.begin(), awaited.places.end(),
+                                       [](const Place& place) { return place.kind == Place::Kind::surface_level; });
+    if (is_shared) return share(awaited.places, awaited.bytes);
     std::vector<std::byte> bytes = file_.content();
     for (std::size_t i = 1; i < awaited.places.size(); ++i) fill(awaited.places[i], bytes);
     fill(awaited.places.front(), std::move(bytes));
+}
+
+// Surfaces hold the bytes together.
+void TraceReader::share(const std::vector<Place>& places, std::uint64_t bytes) {
+    const std::shared_ptr<std::byte[]> memory = blocks_.take(bytes, shared_left_);
+    shared_left_ -= std::min(shared_left_, bytes);
+    const std::span<std::byte> content(memory.get(), bytes);
+    file_.read_content(content);
+    for (const Place& place : places) {
+        if (place.kind == Place::Kind::surface_level)
+            document_.trace.recording->surfaces[place.i].levels[place.level] = {memory, bytes};
+        else
+            fill(place, {content.begin(), content.end()});
+    }
 }
 
 void TraceReader::fill(const Place& place, std::vector<std::byte> bytes) {
@@ -125,8 +143,12 @@ void TraceReader::fill(const Place& place, std::vector<std::byte> bytes) {
     case Place::Kind::buffer:
         trace.scene.resources->buffers[place.i].bytes = std::move(bytes);
         break;
-    case Place::Kind::texture_level: {
-        std::vector<std::uint8_t>& rgba = trace.scene.resources->textures[place.i].levels[place.level].rgba;
+    case Place::Kind::texture_level:
+    case Place::Kind::map_level: {
+        pipeline::Resources& resources = *trace.scene.resources;
+        pipeline::Texture& texture =
+            place.kind == Place::Kind::map_level ? resources.maps[place.i].texture : resources.textures[place.i];
+        std::vector<std::uint8_t>& rgba = texture.levels[place.level].rgba;
         rgba.resize(bytes.size());
         if (!bytes.empty()) std::memcpy(rgba.data(), bytes.data(), bytes.size());
         break;
@@ -135,8 +157,7 @@ void TraceReader::fill(const Place& place, std::vector<std::byte> bytes) {
         fill_instances(place.i, bytes);
         break;
     case Place::Kind::surface_level:
-        trace.recording->surfaces[place.i].levels[place.level] = std::move(bytes);
-        break;
+        break; // see share()
     case Place::Kind::vertex_module:
         trace.recording->programs[place.i].vertex = words_of(bytes);
         break;
@@ -161,7 +182,7 @@ void TraceReader::fill_instances(std::size_t draw, std::span<const std::byte> by
 std::vector<std::string> TraceReader::missing() const {
     std::vector<std::string> lines;
     for (const Record& record : records())
-        if (belongs(record, recorded_.value_or(false)) && !seen_.contains(record.type))
+        if (record.is_needed == nullptr && belongs(record, recorded_.value_or(false)) && !seen_.contains(record.type))
             lines.push_back(
                 fmt::format("{}: byte {}: expected a chunk {}", file_.name(), file_.file_bytes(), record.type.text()));
     for (const auto& [content, awaited] : awaited_)
@@ -182,6 +203,16 @@ Trace TraceReader::finish() {
         trace.recording->resources->find_runs();
         check_recording(*trace.recording, trace.scene.name);
         return trace;
+    }
+    std::uint64_t next = 0;
+    for (const NumberedMaps& of : document_.maps) {
+        auto& materials = trace.scene.resources->materials;
+        if (of.material >= materials.size() || of.material < next)
+            throw sim::InputError(
+                fmt::format("{}: chunk MAPS: expected numbers of {} materials, the least first, got {}", file_.name(),
+                            materials.size(), of.material));
+        materials[of.material].maps = of.maps;
+        next = std::uint64_t{of.material} + 1;
     }
     check_trace(trace);
     trace.scene.resources->find_runs();

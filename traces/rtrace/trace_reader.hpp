@@ -2,6 +2,7 @@
 #pragma once
 
 #include "traces/rtrace/chunk_reader.hpp"
+#include "traces/rtrace/content_blocks.hpp"
 #include "traces/rtrace/records.hpp"
 
 #include <map>
@@ -36,6 +37,7 @@ class TraceReader {
     void await(const BlobName& blob, const Place& place);
     void await_blobs(ChunkType type);
     void check_size(const BlobName& blob, const Place& place) const;
+    void share(const std::vector<Place>& places, std::uint64_t bytes);
     void fill(const Place& place, std::vector<std::byte> bytes);
     void fill_instances(std::size_t draw, std::span<const std::byte> bytes);
 
@@ -50,6 +52,8 @@ class TraceReader {
     };
     std::map<ContentName, Awaited> awaited_;
     std::set<ContentName> blobs_; ///< that were there
+    ContentBlocks blocks_;
+    std::uint64_t shared_left_ = 0; ///< bytes of awaited blobs that share() reads
 
     static Document empty_document();
 };

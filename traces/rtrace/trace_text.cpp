@@ -36,7 +36,7 @@ std::vector<TraceLine> dump_trace(const std::filesystem::path& path) {
     rtrace::Document& document = reader.document(); // printed as the file has it, before anything is derived
     rtrace::Printer printer;
     for (const rtrace::Record& record : rtrace::records()) {
-        if (!belongs(record, document.trace.recording.has_value())) continue;
+        if (!belongs(record, document)) continue;
         printer.begin(record.type.text());
         record.visit(printer, document);
     }

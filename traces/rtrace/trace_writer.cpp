@@ -28,6 +28,8 @@ std::span<const std::byte> bytes_at(const Trace& trace, const Place& place, std:
         return resources_of(trace).buffers[place.i].bytes;
     case Place::Kind::texture_level:
         return std::as_bytes(std::span(trace.scene.resources->textures[place.i].levels[place.level].rgba));
+    case Place::Kind::map_level:
+        return std::as_bytes(std::span(trace.scene.resources->maps[place.i].texture.levels[place.level].rgba));
     case Place::Kind::instances:
         return made = rtrace::bytes_of_matrices(trace.scene.draws[place.i].instances);
     case Place::Kind::surface_level:
@@ -50,23 +52,30 @@ void name_blob(Document& document, const Trace& trace, const Place& place) {
 
 // Fields are visited by reference; the bytes, which may be many, are not copied for that.
 
+pipeline::Texture described(const pipeline::Texture& texture) {
+    CHECK(!texture.decode);
+    pipeline::Texture one;
+    one.name = texture.name;
+    one.srgb = texture.srgb;
+    one.wrap_u = texture.wrap_u;
+    one.wrap_v = texture.wrap_v;
+    one.min_filter = texture.min_filter;
+    one.mag_filter = texture.mag_filter;
+    one.border = texture.border;
+    for (const pipeline::Texture::Level& level : texture.levels)
+        one.levels.push_back({level.width, level.height, {}, 0});
+    return one;
+}
+
 std::shared_ptr<pipeline::Resources> described(const pipeline::Resources& resources) {
     auto copy = std::make_shared<pipeline::Resources>();
     copy->geometries = resources.geometries;
     copy->materials = resources.materials;
     for (const pipeline::Buffer& buffer : resources.buffers) copy->buffers.push_back({buffer.name, {}, 0});
-    for (const pipeline::Texture& texture : resources.textures) {
-        CHECK(!texture.decode);
-        pipeline::Texture& one = copy->textures.emplace_back();
-        one.name = texture.name;
-        one.srgb = texture.srgb;
-        one.wrap_u = texture.wrap_u;
-        one.wrap_v = texture.wrap_v;
-        one.min_filter = texture.min_filter;
-        one.mag_filter = texture.mag_filter;
-        one.border = texture.border;
-        for (const pipeline::Texture::Level& level : texture.levels)
-            one.levels.push_back({level.width, level.height, {}, 0});
+    for (const pipeline::Texture& texture : resources.textures) copy->textures.push_back(described(texture));
+    for (const pipeline::LateTexture& map : resources.maps) {
+        CHECK(!map.make);
+        copy->maps.push_back({described(map.texture)});
     }
     return copy;
 }
@@ -77,7 +86,7 @@ Recording described(const Recording& recording) {
     Recording copy;
     for (const RecordedSurface& one : recording.surfaces)
         copy.surfaces.push_back({one.name, one.kind, one.format, one.width, one.height, one.depth, one.samples,
-                                 std::vector<std::vector<std::byte>>(one.levels.size())});
+                                 std::vector<pipeline::SharedBytes>(one.levels.size())});
     copy.samplers = recording.samplers;
     for (const RecordedProgram& one : recording.programs) copy.programs.push_back({one.name, {}, {}, one.inputs});
     for (const std::vector<UniformValue>& set : recording.values) {
@@ -98,6 +107,12 @@ void name_blobs_of_scene(Document& document, const Trace& trace) {
     for (std::size_t i = 0; i < resources.textures.size(); ++i)
         for (std::size_t k = 0; k < resources.textures[i].levels.size(); ++k)
             name_blob(document, trace, {Place::Kind::texture_level, i, k});
+    for (std::size_t i = 0; i < resources.maps.size(); ++i)
+        for (std::size_t k = 0; k < resources.maps[i].texture.levels.size(); ++k)
+            name_blob(document, trace, {Place::Kind::map_level, i, k});
+    for (std::size_t i = 0; i < resources.materials.size(); ++i)
+        if (resources.materials[i].maps != pipeline::MaterialMaps{})
+            document.maps.push_back({static_cast<std::uint32_t>(i), resources.materials[i].maps});
     for (std::size_t i = 0; i < trace.scene.draws.size(); ++i) {
         const std::size_t count = trace.scene.draws[i].instances.size();
         document.instance_counts.push_back(static_cast<std::uint32_t>(count));
@@ -144,6 +159,7 @@ void check_readable(const Trace& trace, const std::string& path) {
         return;
     }
     trace.scene.resources->read_textures();
+    for (std::uint32_t i = 0; i < trace.scene.resources->maps.size(); ++i) trace.scene.resources->read_map(i);
     rtrace::check_trace(trace);
     rtrace::check_finished(trace);
 }
@@ -155,7 +171,7 @@ void write_trace(const Trace& trace, const std::filesystem::path& path) {
     Document document = document_of(trace);
     ChunkWriter file(path);
     for (const rtrace::Record& record : rtrace::records()) {
-        if (!belongs(record, trace.recording.has_value())) continue;
+        if (!belongs(record, document)) continue;
         rtrace::Encoder encoder(fmt::format("{}: chunk {}", path.string(), record.type.text()));
         record.visit(encoder, document);
         file.add(record.type, encoder.bytes());

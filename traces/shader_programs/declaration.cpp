@@ -3,9 +3,11 @@
 #include "sim/check.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <charconv>
 #include <fmt/format.h>
+#include <string_view>
 
 namespace traces::shader_programs {
 
@@ -65,6 +67,14 @@ class Scanner {
     std::vector<Token> tokens_;
 };
 
+struct Signature {
+    std::string_view type, name;
+};
+
+/// By Function.
+constexpr std::array<Signature, 5> signatures{
+    {{"Entry", "entry"}, {"Entry", "empty"}, {"void", "modify"}, {"State", "initial"}, {"void", "drain"}}};
+
 class Reader {
   public:
     explicit Reader(Declaration& declaration) : to_(declaration) {
@@ -96,8 +106,9 @@ class Reader {
 
     void code() {
         const std::string& text = tokens_[at_].text;
-        for (Function& function : functions_)
-            function.found |= text == function.type && word(1) == function.name && word(2) == "(";
+        for (std::size_t i = 0; i < signatures.size(); ++i)
+            if (text == signatures[i].type && word(1) == signatures[i].name && word(2) == "(")
+                to_.function_lines[i] = tokens_[at_].line;
         to_.needs_colour |= text == "." && word(1) == "colour";
         ++at_;
     }
@@ -116,18 +127,10 @@ class Reader {
     std::uint32_t whole(const std::vector<Token>& line, std::size_t place) const;
     std::size_t one_of(const std::vector<Token>& line, std::initializer_list<std::string_view> names) const;
 
-    struct Function {
-        const char* type;
-        const char* name;
-        bool found = false;
-    };
-
     Declaration& to_;
     std::vector<Token> tokens_;
     std::size_t at_ = 0;
     bool has_entry_ = false, has_state_ = false;
-    std::vector<Function> functions_{
-        {"Entry", "entry"}, {"Entry", "empty"}, {"void", "modify"}, {"State", "initial"}, {"void", "drain"}};
 };
 
 std::uint32_t Reader::whole(const std::vector<Token>& line, std::size_t place) const {
@@ -225,16 +228,12 @@ void Reader::check() const {
     if (std::find(to_.entry.begin(), to_.entry.end(), to_.depth) == to_.entry.end())
         throw sim::InputError(fmt::format(
             "{}: expected a float '{}' in Entry, the depth; '#pragma depth NAME' names another", to_.name, to_.depth));
-    const auto has = [&](const char* name) {
-        return std::any_of(functions_.begin(), functions_.end(),
-                           [&](const Function& f) { return f.found && f.name == std::string_view(name); });
-    };
-    need(has("entry"), "a function 'Entry entry(Fragment f)'");
-    need(has("empty"), "a function 'Entry empty()'");
-    need(has("modify"), has_state_ ? "a function 'void modify(inout Entry e[k], inout State s, Entry f)'"
-                                   : "a function 'void modify(inout Entry e[k], Entry f)'");
-    if (has_state_) need(has("initial"), "a function 'State initial()'");
-    to_.drains = has("drain");
+    const auto has = [&](Function function) { return to_.line_of(function) != 0; };
+    need(has(Function::entry), "a function 'Entry entry(Fragment f)'");
+    need(has(Function::empty), "a function 'Entry empty()'");
+    need(has(Function::modify), has_state_ ? "a function 'void modify(inout Entry e[k], inout State s, Entry f)'"
+                                           : "a function 'void modify(inout Entry e[k], Entry f)'");
+    if (has_state_) need(has(Function::initial), "a function 'State initial()'");
     if (to_.picture == Picture::layers) return;
     const Fields& fields = to_.picture == Picture::nodes ? to_.entry : to_.state;
     for (const char* name : {"r", "g", "b", "t"})

@@ -18,20 +18,21 @@ namespace shader_programs {
 namespace {
 
 using Pixel = std::array<float, std::size_t{pipeline::most_targets} * 4>;
+constexpr std::size_t fragment_floats = 6; ///< colour, depth, draw
 
 class ShaderProgram final : public pipeline::ModifyProgram {
   public:
-    ShaderProgram(const Declaration& declaration, std::uint32_t entries, float opacity, const CompileShader& compile)
+    ShaderProgram(const Declaration& declaration, std::uint32_t entries, const TaskModules& modules)
         : ModifyProgram(entries, static_cast<std::uint32_t>(declaration.entry.size()),
                         static_cast<std::uint32_t>(declaration.state.size())),
           declaration_(declaration),
-          make_entry_(shader_of(Task::entry, opacity, compile)),
-          modify_(shader_of(Task::modify, opacity, compile)) {
+          make_entry_(shader_of(Task::entry, modules)),
+          modify_(shader_of(Task::modify, modules)) {
         clear_.resize(floats_per_pixel());
-        shader_of(Task::clear, opacity, compile)->run({}, {}, clear_);
-        if (declaration_.drains) drain_ = shader_of(Task::drain, opacity, compile);
+        shader_of(Task::clear, modules)->run({}, {}, clear_);
+        if (declaration_.drains()) drain_ = shader_of(Task::drain, modules);
         Pixel after{};
-        const std::uint32_t copying = shader_of(Task::copy, opacity, compile)->run(clear_, {}, floats_of(after));
+        const std::uint32_t copying = shader_of(Task::copy, modules)->run(clear_, {}, floats_of(after));
         const std::uint32_t longest = longest_run();
         cost_.operations = longest > copying ? longest - copying : 0;
     }
@@ -51,7 +52,7 @@ class ShaderProgram final : public pipeline::ModifyProgram {
     }
 
     void make_entry(const pipeline::Fragment& fragment, float* entry) const override {
-        std::array<float, 6> inputs{};
+        std::array<float, fragment_floats> inputs{};
         for (std::size_t i = 0; i < 4 && fragment.rgba != nullptr; ++i) inputs[i] = models::finite(fragment.rgba[i]);
         inputs[4] = models::finite(fragment.depth);
         inputs[5] = static_cast<float>(fragment.draw);
@@ -66,13 +67,16 @@ class ShaderProgram final : public pipeline::ModifyProgram {
     pipeline::Peeling peeling() const override { return declaration_.peeling; }
 
   private:
-    std::unique_ptr<const TaskRun> shader_of(Task task, float opacity, const CompileShader& compile) const {
-        const std::string& name = declaration_.name;
-        const std::vector<std::uint32_t> words = compile(task_text(declaration_, task, k(), opacity), name);
+    std::unique_ptr<const TaskRun> shader_of(Task task, const TaskModules& modules) const {
+        const std::size_t pixel = floats_per_pixel(), entry = floats_per_entry();
+        TaskFloats floats{pixel, 0, pixel};
+        if (task == Task::entry) floats = {0, fragment_floats, entry};
+        if (task == Task::clear) floats = {0, 0, pixel};
+        if (task == Task::modify) floats = {pixel, entry, pixel};
         try {
-            return std::make_unique<const TaskRun>(words, name);
+            return std::make_unique<const TaskRun>(modules[static_cast<std::size_t>(task)], floats, declaration_.name);
         } catch (const sim::InputError& error) {
-            throw sim::InputError(fmt::format("{}: {}", name, error.what()));
+            throw sim::InputError(fmt::format("{}: {}", declaration_.name, error.what()));
         }
     }
 
@@ -127,14 +131,7 @@ models::MakePicture picture_of(const Declaration& declaration) {
     return of_state ? models::state_picture(slots) : models::node_picture(slots);
 }
 
-} // namespace
-
-} // namespace shader_programs
-
-models::ProgramChoice shader_program(std::string name, std::string text, std::uint32_t k, float opacity,
-                                     const CompileShader& compile) {
-    using namespace shader_programs;
-    const Declaration declaration = declaration_of(std::move(name), std::move(text));
+std::uint32_t entries_of(const Declaration& declaration, std::uint32_t k) {
     const std::uint32_t entries = k == 0 ? declaration.default_k : k;
     if (entries < declaration.least_k || entries > declaration.most_k)
         throw sim::InputError(fmt::format("{}: k: expected {}, got {}", declaration.name,
@@ -142,11 +139,38 @@ models::ProgramChoice shader_program(std::string name, std::string text, std::ui
                                               ? std::to_string(declaration.least_k)
                                               : fmt::format("{} to {}", declaration.least_k, declaration.most_k),
                                           entries));
-    const std::size_t floats = entries * declaration.entry.size() + declaration.state.size();
-    if (floats > std::size_t{pipeline::most_targets} * 4)
+    if (declaration.floats(entries) > std::size_t{pipeline::most_targets} * 4)
         throw sim::InputError(fmt::format("{}: k = {}: expected a pixel of {} floats or fewer, got {}",
-                                          declaration.name, entries, pipeline::most_targets * 4, floats));
-    return {std::make_shared<const ShaderProgram>(declaration, entries, opacity, compile), picture_of(declaration)};
+                                          declaration.name, entries, pipeline::most_targets * 4,
+                                          declaration.floats(entries)));
+    return entries;
+}
+
+} // namespace
+
+TaskModules compile_tasks(const Declaration& declaration, std::uint32_t k, float opacity,
+                          const CompileShader& compile) {
+    const std::uint32_t entries = entries_of(declaration, k);
+    TaskModules modules;
+    for (const Task task : {Task::entry, Task::clear, Task::copy, Task::modify, Task::drain})
+        if (task != Task::drain || declaration.drains())
+            modules[static_cast<std::size_t>(task)] =
+                compile(task_text(declaration, task, entries, opacity), declaration.name);
+    return modules;
+}
+
+models::ProgramChoice program_of(const Declaration& declaration, std::uint32_t k, const TaskModules& modules) {
+    return {std::make_shared<const ShaderProgram>(declaration, entries_of(declaration, k), modules),
+            picture_of(declaration)};
+}
+
+} // namespace shader_programs
+
+models::ProgramChoice shader_program(std::string name, std::string text, std::uint32_t k, float opacity,
+                                     const CompileShader& compile) {
+    using namespace shader_programs;
+    const Declaration declaration = declaration_of(std::move(name), std::move(text));
+    return program_of(declaration, k, compile_tasks(declaration, k, opacity, compile));
 }
 
 } // namespace traces

@@ -6,7 +6,9 @@
 #pragma once
 
 #include "models/programs/program_choice.hpp"
+#include "traces/shader_programs/task_text.hpp"
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -19,6 +21,20 @@ using CompileShader = std::function<std::vector<std::uint32_t>(const std::string
 
 /// SPIR-V instructions that one fragment may take.
 inline constexpr std::uint64_t modify_budget = 1ULL << 16;
+
+namespace shader_programs {
+
+/// The shaders of a program in SPIR-V, by Task; none of `drain` where it does not.
+using TaskModules = std::array<std::vector<std::uint32_t>, 5>;
+
+/// For k entries and one opacity. @param k entries; 0: as many as the text says. Throws sim::InputError, one line.
+TaskModules compile_tasks(const Declaration& declaration, std::uint32_t k, float opacity, const CompileShader& compile);
+
+/// The program of such modules, which may be anything: what does not fit the declaration is refused.
+/// @param k as for compile_tasks(). Throws sim::InputError, one line.
+models::ProgramChoice program_of(const Declaration& declaration, std::uint32_t k, const TaskModules& modules);
+
+} // namespace shader_programs
 
 /// The program of a text. `name` stands for it in messages.
 /// @param k entries; 0: as many as the text says. Throws sim::InputError, one line.

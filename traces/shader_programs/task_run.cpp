@@ -22,12 +22,20 @@ class NoTextures final : public spirv::ShaderTextures {
     spirv::Texels level(const spirv::TextureSample&) override { return {}; }
 };
 
+/// Uniform or output: an array of vectors of four floats, or one of them.
+template <class Variable>
+void expect_room(const Variable& variable, const char* name, std::size_t floats) {
+    if (variable.kind != spirv::Kind::real || variable.components != 4 || variable.columns != 1 ||
+        std::size_t{variable.elements} * 4 < floats)
+        throw sim::InputError(fmt::format("expected {} as an array of {} vec4 or more", name, (floats + 3) / 4));
+}
+
 } // namespace
 
 TaskRun::Worker::Worker(const spirv::Program& program)
     : quad(program, modify_budget), uniforms(program.uniform_words) {}
 
-TaskRun::TaskRun(const std::vector<std::uint32_t>& words, std::string name)
+TaskRun::TaskRun(const std::vector<std::uint32_t>& words, const TaskFloats& floats, std::string name)
     : name_(std::move(name)),
       module_(words),
       program_(module_),
@@ -35,6 +43,9 @@ TaskRun::TaskRun(const std::vector<std::uint32_t>& words, std::string name)
       fragment_(program_.uniform(module_, fragment_name)),
       after_(program_.output(after_name)) {
     if (after_ == nullptr) throw sim::InputError(fmt::format("expected a shader that writes {}", after_name));
+    expect_room(*after_, after_name, floats.after);
+    if (before_) expect_room(*before_, before_name, floats.before);
+    if (fragment_) expect_room(*fragment_, fragment_name, floats.fragment);
     if (!program_.textures.empty())
         throw sim::InputError(
             fmt::format("expected a program without textures, got '{}'", program_.textures.front().name));

@@ -12,10 +12,16 @@
 
 namespace traces::shader_programs {
 
+/// Floats that a shader is given at most, and that it writes at least.
+struct TaskFloats {
+    std::size_t before = 0, fragment = 0, after = 0;
+};
+
 class TaskRun {
   public:
-    /// `name`: of the program, for messages of run(). Throws sim::InputError for what no modify program may do.
-    TaskRun(const std::vector<std::uint32_t>& words, std::string name);
+    /// `name`: of the program, for messages of run(). Throws sim::InputError for modules that are none, do not have
+    /// room for so many floats, or do what no modify program may.
+    TaskRun(const std::vector<std::uint32_t>& words, const TaskFloats& floats, std::string name);
 
     /// Writes as many floats as `after` has, all of them finite; returns the instructions that it took.
     std::uint32_t run(std::span<const float> before, std::span<const float> fragment, std::span<float> after) const;

@@ -32,15 +32,19 @@ class TaskWriter {
         const std::string state = has_state() ? ", kbuffer_s" : "";
         if (task == Task::modify) {
             text += "    Entry kbuffer_f;\n" + assignments("kbuffer_f", program_.entry, fragment_name, 0);
-            text += fmt::format("    modify(kbuffer_e{}, kbuffer_f);\n", state);
+            text += call(Function::modify, fmt::format("modify(kbuffer_e{}, kbuffer_f);", state));
         }
-        if (task == Task::drain) text += fmt::format("    drain(kbuffer_e{});\n", state);
+        if (task == Task::drain) text += call(Function::drain, fmt::format("drain(kbuffer_e{});", state));
         return text + stored() + "}\n";
     }
 
   private:
     bool has_state() const { return !program_.state.empty(); }
-    std::size_t floats() const { return k_ * program_.entry.size() + program_.state.size(); }
+    std::size_t floats() const { return program_.floats(k_); }
+
+    std::string call(Function function, const std::string& statement) const {
+        return fmt::format("#line {}\n    {}\n", program_.line_of(function), statement);
+    }
 
     std::string declarations(bool before, bool fragment) const {
         const std::size_t targets = (floats() + 3) / 4;
@@ -53,7 +57,8 @@ class TaskWriter {
     std::string entry() const {
         std::string text = fmt::format("out vec4 {}[{}];\nuniform vec4 {}[2];\nvoid main() {{\n", after_name,
                                        (program_.entry.size() + 3) / 4, fragment_name);
-        text += fmt::format("    Entry kbuffer_f = entry(Fragment({0}[0], {0}[1].x, {0}[1].y));\n", fragment_name);
+        text += call(Function::entry,
+                     fmt::format("Entry kbuffer_f = entry(Fragment({0}[0], {0}[1].x, {0}[1].y));", fragment_name));
         return text +
                packed(
                    [&](std::size_t place) {
@@ -64,8 +69,8 @@ class TaskWriter {
     }
 
     std::string cleared() const {
-        std::string text = "    for (int i = 0; i < k; ++i) kbuffer_e[i] = empty();\n";
-        return text + (has_state() ? "    kbuffer_s = initial();\n" : "");
+        return call(Function::empty, "for (int i = 0; i < k; ++i) kbuffer_e[i] = empty();") +
+               (has_state() ? call(Function::initial, "kbuffer_s = initial();") : "");
     }
 
     std::string fetched() const {

@@ -20,7 +20,8 @@ inline constexpr const char* after_name = "kbuffer_after";
 /// An entry; of `entry`: colour, then depth and draw.
 inline constexpr const char* fragment_name = "kbuffer_fragment";
 
-/// GLSL 4.50, a fragment shader; lines count as in the program's own text. `opacity` is what the workload wants.
+/// GLSL 4.50, a fragment shader. Lines count as in the program's own text, and a call of a function that does not fit
+/// has the line of the function. `opacity` is what the workload wants.
 std::string task_text(const Declaration& program, Task task, std::uint32_t k, float opacity);
 
 } // namespace traces::shader_programs

@@ -1,5 +1,6 @@
 // The kernel as a shader. The four pixels of a quad run in lockstep: each read is one fetch by those that still have
 // something to read there, of one surface. Of a sample all layers are issued, as a choice between them is no branch.
+#include "traces/shader_names.hpp"
 #include "traces/shadows/shadow_shaders.hpp"
 
 #include <algorithm>
@@ -8,14 +9,6 @@
 namespace traces {
 
 namespace {
-
-using pipeline::LaneIndices;
-using pipeline::QuadPlaces;
-using pipeline::QuadTexels;
-using pipeline::ShaderInput;
-using pipeline::ShaderOutput;
-using pipeline::ShaderShape;
-using pipeline::SurfaceAccess;
 
 // Instructions (A20 to A24), each on vectors of four.
 constexpr std::uint32_t kernel_leave = 2;     // compare, leave
@@ -75,7 +68,7 @@ class ShadowSearch : public pipeline::Shader {
     explicit ShadowSearch(const ShadowSetup& setup)
         : setup_(setup), formulas_(setup.light, setup.map, setup.kernel), reads_(setup) {}
 
-    ShaderShape shape() const override { return {.reads = reads_.count(), .registers = 12}; }
+    ShaderShape shape() const override { return {.reads = reads_.count(), .registers = 12, .discards = false}; }
 
   protected:
     static bool is_surface(const glm::vec4& colour) { return colour.a > 0.0F; }
@@ -256,7 +249,7 @@ class ShadowBiasShader final : public pipeline::Shader {
   public:
     explicit ShadowBiasShader(const ShadowSetup& setup) : layers_(setup.light, setup.map) {}
 
-    ShaderShape shape() const override { return {.reads = has_slopes() ? 2U : 1U}; }
+    ShaderShape shape() const override { return {.reads = has_slopes() ? 2U : 1U, .discards = false}; }
 
     void shade(const ShaderInput& input, SurfaceAccess& surfaces, ShaderOutput& output) const override {
         const QuadPlaces at(input);

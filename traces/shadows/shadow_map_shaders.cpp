@@ -1,5 +1,6 @@
 // The shaders before the kernel.
 #include "pipeline/functional/fragment_operations.hpp"
+#include "traces/shader_names.hpp"
 #include "traces/shadows/shadow_shaders.hpp"
 #include "traces/view_rays.hpp"
 
@@ -8,14 +9,6 @@
 namespace traces {
 
 namespace {
-
-using pipeline::LaneIndices;
-using pipeline::QuadPlaces;
-using pipeline::QuadTexels;
-using pipeline::ShaderInput;
-using pipeline::ShaderOutput;
-using pipeline::ShaderShape;
-using pipeline::SurfaceAccess;
 
 class ShadowEyeShader final : public pipeline::Shader {
   public:
@@ -46,7 +39,7 @@ class ShadowPackShader final : public pipeline::Shader {
   public:
     explicit ShadowPackShader(const ShadowSetup& setup) : layers_(setup.light, setup.map) {}
 
-    ShaderShape shape() const override { return {.outputs = packs(), .reads = 1}; }
+    ShaderShape shape() const override { return {.outputs = packs(), .reads = 1, .discards = false}; }
 
     void shade(const ShaderInput& input, SurfaceAccess& surfaces, ShaderOutput& output) const override {
         const QuadPlaces at(input);
@@ -68,7 +61,7 @@ class ShadowSlopeShader final : public pipeline::Shader {
   public:
     explicit ShadowSlopeShader(const ShadowSetup& setup) : layers_(setup.light, setup.map) {}
 
-    ShaderShape shape() const override { return {.outputs = packs(), .reads = 1, .registers = 6}; }
+    ShaderShape shape() const override { return {.outputs = packs(), .reads = 1, .registers = 6, .discards = false}; }
 
     void shade(const ShaderInput& input, SurfaceAccess& surfaces, ShaderOutput& output) const override {
         const QuadPlaces at(input);
@@ -98,7 +91,7 @@ class ShadowSlopeShader final : public pipeline::Shader {
 
 class LeastDepthShader final : public pipeline::Shader {
   public:
-    ShaderShape shape() const override { return {.reads = 1}; }
+    ShaderShape shape() const override { return {.reads = 1, .discards = false}; }
 
     void shade(const ShaderInput& input, SurfaceAccess& surfaces, ShaderOutput& output) const override {
         surfaces.issue(1 + 3, input.pixels); // address, three minima

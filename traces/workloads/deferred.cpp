@@ -8,11 +8,13 @@
 // be k-buffers, too.
 // Source: Aladağlı 2015 (specification 003, sections 1.1 to 1.6; 5 for kg).
 #include "models/programs/two_class.hpp"
+#include "pipeline/fragment_stream.hpp"
 #include "pipeline/functional/eye_depth.hpp"
 #include "sim/check.hpp"
 #include "traces/deferred/shaders.hpp"
 #include "traces/deferred/truth.hpp"
 #include "traces/pass_graph.hpp"
+#include "traces/workloads/deferred_params.hpp"
 #include "traces/workloads/methods.hpp"
 
 #include <algorithm>
@@ -22,68 +24,9 @@
 
 namespace traces {
 
-enum class DeferredMethod : std::uint8_t { pm, dp, fwd, fw, kg };
-
-} // namespace traces
-
-template <>
-struct sim::EnumNames<traces::DeferredMethod> {
-    static constexpr std::array<std::string_view, 5> names{"pm", "dp", "fwd", "fw", "kg"};
-};
-
-namespace traces {
-
 namespace {
 
 constexpr const char* workload_deferred = "workload deferred";
-
-struct DeferredParams {
-    DeferredMethod method = DeferredMethod::pm;
-    std::uint32_t lights = 4;
-    Shadows shadows = Shadows::transparent;
-    ShadowMaps shadow_maps = ShadowMaps::rows;
-    bool refraction = true;
-    double refraction_coefficient = 0.03;
-    std::uint32_t map_size = 1024;
-    double bias = 1e-3;
-    float slope_bias = 2.0F;
-    double intensity = 1.0;
-    float ambient = 0.1F;
-    float specular = 0.3F;
-    float specular_power = 32.0F;
-    TruthFilter truth_filter = TruthFilter::nearest;
-
-    static constexpr auto fields() {
-        using P = DeferredParams;
-        return std::tuple(
-            sim::field<&P::method>(
-                "pm: one G-buffer, whose rows take turns; dp: two, of which the second is peeled; fwd, fw: "
-                "forward rendering with and without stored depths; kg: a k-buffer as G-buffer"),
-            sim::field<&P::lights>("spot lights: those of the scene first, then some around it")
-                .unit("lights")
-                .range(0, 64),
-            sim::field<&P::shadows>("none, opaque (of all surfaces), transparent (panes let their colour pass)"),
-            sim::field<&P::shadow_maps>("with transparent shadows: rows: rows take turns, opaque surfaces and all; "
-                                        "two-class: a k-buffer, with methods that have none"),
-            sim::field<&P::refraction>("panes show what lies aside of what is behind them"),
-            sim::field<&P::refraction_coefficient>("offset of a normal across the view, over the picture's height")
-                .range(0.0, 1.0),
-            sim::field<&P::map_size>("edge of the shadow maps").unit("texels").range(2, 8192),
-            sim::field<&P::bias>("that receivers come nearer to the light, over its range").range(0.0, 1.0),
-            sim::field<&P::slope_bias>(
-                "of the depths in shadow maps, in changes from one texel to the next: a point asks "
-                "two texels, of which one may lie that far away")
-                .range(0.0F, 1000.0F),
-            sim::field<&P::intensity>("of each light").range(0.0, 1000.0),
-            sim::field<&P::ambient>("light that reaches every surface").range(0.0F, 1.0F),
-            sim::field<&P::specular>("of all surfaces").range(0.0F, 1.0F),
-            sim::field<&P::specular_power>("of all surfaces").range(0.0F, 255.0F),
-            sim::field<&P::truth_filter>("panes between a light and a point that ray-traced truth looks through. "
-                                         "nearest: the one next to the light, as shadow maps do; product: all. No "
-                                         "method's picture depends on it"));
-    }
-};
-static_assert(sim::fully_described<DeferredParams>);
 
 void check(const Scene& scene, const pipeline::View& view) {
     if (scene.screen_space)
@@ -117,7 +60,14 @@ class DeferredGraph {
         std::iota(all_.begin(), all_.end(), 0U);
         volumes_ = add_light_volumes(frame, lights_);
         frame_ = frame;
+        materials_ = std::make_shared<const MaterialReads>(frame_, CommonShine{params.specular, params.specular_power},
+                                                           params.maps);
+        if (const std::uint32_t draws = materials_->without_coordinates(); draws != 0)
+            frame.notes.push_back(fmt::format("maps of materials: {} draws have none of the coordinates that one asks "
+                                              "for, and are drawn without it",
+                                              draws));
         graph_.emplace(std::move(frame));
+        for (const pipeline::SurfaceInfo& map : materials_->surfaces()) graph_->add_surface(map);
         build();
     }
 
@@ -173,8 +123,9 @@ class DeferredGraph {
         graph_->add_clear("clear " + name, std::move(cleared));
         ShadedPass pass;
         pass.name = name;
-        pass.shader = gbuffer_shader(frame_, {layer, params_.specular, params_.specular_power});
+        pass.shader = gbuffer_shader(frame_, materials_, layer);
         if (layer == Layer::behind) pass.reads = {nearest_.depths};
+        read_maps(pass);
         pass.targets = names.targets();
         pass.draws = all_;
         pass.depth = depth_surface;
@@ -186,7 +137,8 @@ class DeferredGraph {
         graph_->add_clear("clear G-buffer", {kbuffer_surface});
         ShadedPass pass;
         pass.name = "G-buffer";
-        pass.shader = two_class_gbuffer_shader(frame_, {Layer::nearest, params_.specular, params_.specular_power});
+        pass.shader = two_class_gbuffer_shader(frame_, materials_);
+        read_maps(pass);
         pass.draws = all_;
         pass.kbuffer = kbuffer_surface;
         graph_->add_shaded(std::move(pass));
@@ -203,7 +155,8 @@ class DeferredGraph {
         graph_->add_clear("clear", std::move(cleared));
         ShadedPass pass;
         pass.name = "ambient";
-        pass.shader = ambient_shader(frame_, params_.ambient, stores_depths());
+        pass.shader = ambient_shader(frame_, materials_, params_.ambient, stores_depths());
+        read_maps(pass);
         pass.targets = std::move(targets);
         pass.draws = all_;
         pass.depth = depth_surface;
@@ -211,19 +164,28 @@ class DeferredGraph {
         graph_->add_shaded(std::move(pass));
     }
 
-    // All surfaces once more; what the ambient pass left nearest is lit, and keeps its opacity.
+    // All surfaces once more; what the ambient pass left nearest is lit, and keeps its opacity. Where several surfaces
+    // have one depth, each passes the test and adds its light (specification 003, section 1.7: a blend per fragment),
+    // unless the stencil holds the number of this light already.
     void add_forward_light(std::size_t light) {
         ShadedPass pass;
         pass.name = fmt::format("light {}", light);
-        pass.shader = forward_light_shader(frame_, lights_[light], light_options(),
-                                           {Layer::interlaced, params_.specular, params_.specular_power});
+        pass.shader = forward_light_shader(frame_, materials_, lights_[light], light_options());
         pass.reads = shadow_maps();
+        read_maps(pass);
         pass.targets = {nearest_.colours};
         pass.draws = all_;
         pass.depth = depth_surface;
         pipeline::RasterState& state = pass.states[0];
         state.depth.test = true;
         state.depth.compare = pipeline::Compare::less_equal;
+        if (params_.lit_once) {
+            state.stencil.test = true;
+            state.stencil.front.compare = pipeline::Compare::not_equal;
+            state.stencil.front.reference = static_cast<std::uint8_t>(light + 1);
+            state.stencil.front.passes = pipeline::StencilOperation::replace;
+            state.stencil.back = state.stencil.front;
+        }
         state.blend[0] = pipeline::blends::of(pipeline::blends::sum);
         state.write_mask[0] = 0b0111;
         graph_->add_shaded(std::move(pass));
@@ -293,7 +255,8 @@ class DeferredGraph {
         pass.name = "composition";
         pass.screen = true;
         pass.targets = {"picture"};
-        const CompositionOptions options{params_.refraction, params_.refraction_coefficient};
+        const bool glowing = materials_->glows() && !forward();
+        const CompositionOptions options{params_.refraction, params_.refraction_coefficient, glowing};
         pass.reads = {nearest_.colours, nearest_.light};
         if (keeps_classes()) {
             pass.shader = two_class_composition(eye_, options);
@@ -302,6 +265,7 @@ class DeferredGraph {
             pass.shader = peeled_composition(eye_, options);
             pass.reads = {nearest_.colours, nearest_.light, nearest_.normals, nearest_.depths,
                           behind_.colours,  behind_.light,  behind_.depths};
+            if (glowing) pass.reads.insert(pass.reads.end(), {nearest_.specular, behind_.specular});
         } else if (forward()) {
             pass.shader = interlaced_composition(eye_, options,
                                                  stores_depths() ? Interlaced::forward_depths : Interlaced::forward);
@@ -311,8 +275,13 @@ class DeferredGraph {
         } else {
             pass.shader = interlaced_composition(eye_, options);
             if (params_.refraction) pass.reads.insert(pass.reads.end(), {nearest_.normals, nearest_.depths});
+            if (glowing) pass.reads.push_back(nearest_.specular);
         }
         graph_->add_shaded(std::move(pass));
+    }
+
+    void read_maps(ShadedPass& pass) const {
+        for (const pipeline::SurfaceInfo& map : materials_->surfaces()) pass.reads.push_back(map.name);
     }
 
     DeferredParams params_;
@@ -320,14 +289,32 @@ class DeferredGraph {
     std::vector<std::uint32_t> all_, volumes_;
     std::vector<SpotLight> lights_;
     pipeline::Frame frame_;
+    SharedMaterials materials_;
     std::optional<PassGraph> graph_;
     GBuffer nearest_{""}, behind_{" behind"};
 };
+
+// The texels of a map are made as they are drawn to, but all fragments of all passes are held at once.
+void note_large_maps(const DeferredParams& params, pipeline::Frame& frame) {
+    constexpr std::uint32_t ordinary = 2048;
+    if (params.map_size <= ordinary || params.lights == 0 || params.shadows == Shadows::none) return;
+    // A quad with its depths; colours that the shader is given and makes, which opaque shadows have no use for.
+    const std::uint64_t values = params.shadows == Shadows::opaque ? 1 : 3;
+    const std::uint64_t quads = std::uint64_t{params.map_size} * params.map_size / 4;
+    const std::uint64_t bytes =
+        quads * (sizeof(pipeline::Quad) + sizeof(pipeline::Lanes) + values * sizeof(pipeline::QuadTexels));
+    frame.notes.push_back(
+        fmt::format("shadow maps of {0}x{0} texels: the fragments of each light take up to {1} MiB of "
+                    "memory for every layer of surfaces in its map",
+                    params.map_size, bytes >> 20U));
+}
 
 pipeline::Frame build(const Scene& scene, const pipeline::View& view, const DeferredParams& params) {
     check(scene, view);
     pipeline::Frame frame = frame_of(scene, view);
     frame.background = glm::vec4(0, 0, 0, 1);
+    const bool forward = params.method == DeferredMethod::fw || params.method == DeferredMethod::fwd;
+    if (params.lit_once && forward) frame.depth_format = pipeline::SurfaceFormat::d24s8;
     const bool shadow_kbuffer =
         params.shadows == Shadows::transparent && params.shadow_maps == ShadowMaps::two_class && params.lights != 0;
     if (shadow_kbuffer && params.method == DeferredMethod::kg)
@@ -344,6 +331,7 @@ pipeline::Frame build(const Scene& scene, const pipeline::View& view, const Defe
     if (const std::size_t taken = std::min<std::size_t>(spots, params.lights); taken != scene.lights.size())
         frame.notes.push_back(fmt::format("{} of the scene's {} lights shine: spots only, and as many as asked for",
                                           taken, scene.lights.size()));
+    note_large_maps(params, frame);
     if (params.lights == 0) frame.notes.emplace_back("no lights: surfaces are seen in the ambient light alone");
     return DeferredGraph(scene, std::move(frame), params).lower();
 }
@@ -357,13 +345,15 @@ TruthMethod truth(const Scene& scene, const pipeline::Frame& frame, const Deferr
                                          params.intensity,
                                          static_cast<double>(params.ambient),
                                          static_cast<double>(params.specular),
-                                         static_cast<double>(params.specular_power)});
+                                         static_cast<double>(params.specular_power),
+                                         params.maps});
     DeferredParams known = params; // without what rays have no use for
     const DeferredParams usual;
     known.method = usual.method;
     known.map_size = usual.map_size;
     known.bias = usual.bias;
     known.slope_bias = usual.slope_bias;
+    known.lit_once = usual.lit_once;
     method.key = key_of(sim::DescribedRef(known));
     return method;
 }
@@ -373,6 +363,7 @@ TruthMethod truth(const Scene& scene, const pipeline::Frame& frame, const Deferr
 Workload deferred_workload() {
     Workload workload = make_workload<DeferredParams>(
         "deferred", "deferred shading of one transparent layer, with coloured shadows and refraction", build, truth);
+    workload.reads_maps = true;
     workload.quality = {{"method", {"pm", "dp", "fwd", "fw", "kg"}},
                         {"map_size", {"256", "512", "1024", "2048"}},
                         {"shadows", {"none", "opaque", "transparent"}},

@@ -3,15 +3,15 @@
 // Source: Bavoil 2007, sections 4.4 and 6.1.1 (specification 004: workload W2, programs A6 and A11). Whether one pass
 // with a k-buffer does it or k passes of depth peeling (W3) is the design's choice, so the graph is the same for both.
 // Instead of A6 a program that composites may run: A7, multi-layer alpha blending, or one that the user wrote.
-#include "models/programs/language/user_program.hpp"
-#include "models/programs/library.hpp"
 #include "models/programs/nearest_k.hpp"
 #include "models/programs/pictures.hpp"
+#include "models/programs/program_file.hpp"
 #include "pipeline/format_choice.hpp"
 #include "sim/check.hpp"
 #include "sim/suggest.hpp"
 #include "traces/loads.hpp"
 #include "traces/pass_graph.hpp"
+#include "traces/user_programs.hpp"
 #include "traces/workloads/methods.hpp"
 
 #include <algorithm>
@@ -56,7 +56,7 @@ struct TransparencyParams {
         return std::tuple(
             sim::field<&P::k>("layers kept per pixel").unit("layers").range(1, 64),
             sim::field<&P::program>("what a fragment does to its pixel: nearest-k, order-and-blend, mlab, or a program "
-                                    "of the user's (a file *.kb)"),
+                                    "of the user's (a file *.kb or *.glsl)"),
             sim::field<&P::entry>("what a layer of nearest-k keeps: colour and depth, depth, or depth and draw"),
             sim::field<&P::transparent>("which draws are transparent: all, or those whose material is (the others are "
                                         "drawn first, with a depth buffer)"),
@@ -88,13 +88,13 @@ constexpr std::array<std::string_view, 3> compositing_programs{"nearest-k", "ord
 
 models::ProgramChoice program_of(const TransparencyParams& params) {
     const auto& known = compositing_programs;
-    if (!models::is_user_program(params.program) &&
-        std::find(known.begin(), known.end(), params.program) == known.end())
-        throw sim::InputError(fmt::format("workload transparency: program: expected {} or a file *.kb, got '{}'{}",
-                                          fmt::join(known, ", "), params.program,
-                                          sim::did_you_mean(params.program, {known.begin(), known.end()})));
+    const std::string name(models::program_name(params.program));
+    if (!is_user_program(params.program) && std::find(known.begin(), known.end(), params.program) == known.end())
+        throw sim::InputError(
+            fmt::format("workload transparency: program: expected {} or a file *.kb or *.glsl, got '{}'{}",
+                        fmt::join(known, ", "), name, sim::did_you_mean(name, {known.begin(), known.end()})));
     const bool usual = params.entry == models::EntryKind::rgbz;
-    return models::choose_program(
+    return chosen_program(
         params.program, {usual ? std::string() : std::string(sim::enum_name(params.entry)), params.k, params.opacity});
 }
 
@@ -150,13 +150,14 @@ Workload transparency_workload() {
                    "transparency", "the k nearest fragments of each pixel, composited front to back with one opacity",
                    build, truth),
                own_k, "k");
-    workload.program_parameters = {"program"};
+    workload.program_parameters = {{"program", "k", "opacity"}};
     workload.quality = {{"k", {"1", "2", "4", "8", "16", "32"}}};
-    workload.options = {{"k", "K", "Entries per pixel of the k-buffer (default 4)"},
-                        {"entry", "KIND", "What an entry holds: rgbz, z or zo (default rgbz)"},
-                        {"program", "NAME",
-                         "What a fragment does to its pixel: nearest-k, order-and-blend, mlab, or a file *.kb (default "
-                         "nearest-k)"}};
+    workload.options = {
+        {"k", "K", "Entries per pixel of the k-buffer (default 4)"},
+        {"entry", "KIND", "What an entry holds: rgbz, z or zo (default rgbz)"},
+        {"program", "NAME",
+         "What a fragment does to its pixel: nearest-k, order-and-blend, mlab, or a file *.kb or *.glsl "
+         "(default nearest-k)"}};
     workload.examples = {{"accuracy", "scene.glb --sweep k=1,2,4,8,16"}};
     return workload;
 }

@@ -5,23 +5,17 @@
 #include "models/programs/language/interpreter.hpp"
 #include "models/programs/language/parser.hpp"
 #include "models/programs/pictures.hpp"
+#include "models/programs/program_file.hpp"
 #include "ropsim_build.hpp"
 #include "sim/check.hpp"
-#include "sim/read_file.hpp"
 
 #include <algorithm>
 #include <array>
-#include <filesystem>
 #include <fmt/format.h>
-#include <system_error>
 
 namespace models {
 
 namespace {
-
-namespace fs = std::filesystem;
-
-constexpr std::uintmax_t longest_text = 1U << 20; ///< bytes
 
 class UserProgram final : public pipeline::ModifyProgram {
   public:
@@ -83,20 +77,9 @@ MakePicture picture_of(const language::Program& program) {
     return of_state ? state_picture(slots) : node_picture(slots);
 }
 
-fs::path find(std::string_view path) {
-    std::error_code failed;
-    if (fs::exists(path, failed)) return path;
-    const fs::path name(path);
-    const auto installed = ropsim_build::find_data(fs::path("models/programs") / name);
-    return !name.has_parent_path() && installed ? *installed : name;
-}
-
 } // namespace
 
 ProgramChoice user_program(std::string name, std::string text, std::uint32_t k, const language::Overrides& overrides) {
-    if (text.size() > longest_text)
-        throw sim::InputError(
-            fmt::format("{}: expected a program of at most {} bytes, got {}", name, longest_text, text.size()));
     language::Program program = language::parse({std::move(name), std::move(text)});
     language::check(program);
     const std::uint32_t entries = k == 0 ? program.default_k : k;
@@ -111,22 +94,10 @@ ProgramChoice user_program(std::string name, std::string text, std::uint32_t k, 
     return {std::make_shared<const UserProgram>(std::move(program), std::move(compiled), entries), std::move(picture)};
 }
 
-bool is_program_file(std::string_view name) {
-    return name.ends_with(".kb") && name.find('\n') == std::string_view::npos;
-}
+bool is_user_program(std::string_view program) { return program_name(program).ends_with(".kb"); }
 
-bool is_user_program(std::string_view name) { return is_program_file(name.substr(0, name.find('\n'))); }
-
-std::string with_program_text(const std::string& name) {
-    if (!is_program_file(name)) return name;
-    return fs::path(name).filename().string() + "\n" + sim::read_file(find(name), longest_text);
-}
-
-ProgramChoice load_user_program(std::string_view name, std::uint32_t k, const language::Overrides& overrides) {
-    const std::size_t line = name.find('\n');
-    if (line == std::string_view::npos)
-        return user_program(std::string(name), sim::read_file(find(name), longest_text), k, overrides);
-    return user_program(std::string(name.substr(0, line)), std::string(name.substr(line + 1)), k, overrides);
+ProgramChoice load_user_program(std::string_view program, std::uint32_t k, const language::Overrides& overrides) {
+    return user_program(std::string(program_name(program)), program_text(program), k, overrides);
 }
 
 std::vector<std::string> shipped_user_programs() { return ropsim_build::data_files("models/programs", ".kb"); }

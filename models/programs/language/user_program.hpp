@@ -16,16 +16,12 @@ namespace models {
 ProgramChoice user_program(std::string name, std::string text, std::uint32_t k,
                            const language::Overrides& overrides = {});
 
-/// Whether a program's name is that of a file (*.kb).
-bool is_program_file(std::string_view name);
-/// Whether a name stands for a user's program: that of a file, or a line with one and the program's text behind it.
-bool is_user_program(std::string_view name);
-/// A program that needs its file no more: `name` with the text behind it, where it is that of a file.
-std::string with_program_text(const std::string& name);
+/// Whether a name stands for a user's program in this language: that of a file *.kb, or a line with one and the
+/// program's text behind it.
+bool is_user_program(std::string_view program);
 
-/// The program in a file, or in the text behind its name. A file is one of that path, or else of that name in the data
-/// folder models/programs.
-ProgramChoice load_user_program(std::string_view name, std::uint32_t k, const language::Overrides& overrides = {});
+/// The program in a file, or in the text behind its name, as program_text() finds it.
+ProgramChoice load_user_program(std::string_view program, std::uint32_t k, const language::Overrides& overrides = {});
 
 /// Those in the data folder, as load_user_program() finds them: "nearest_k.kb" and so on.
 std::vector<std::string> shipped_user_programs();

@@ -33,7 +33,7 @@ class FragmentWriter {
   private:
     std::string of_side(bool secondary) {
         const std::string type = secondary ? "vec3" : "vec4";
-        const std::string front = text_.input(type, colour_name(true, secondary), state_.flat);
+        std::string front = text_.input(type, colour_name(true, secondary), state_.flat);
         if (!two_sided(state_)) return front;
         const std::string back = text_.input(type, colour_name(false, secondary), state_.flat);
         return text_.local(type, secondary ? "secondary" : "primary",

@@ -1,5 +1,6 @@
 #include "traces/recording/import/geometry.hpp"
 
+#include "traces/record_module/element_types.hpp"
 #include "traces/record_module/writer.hpp"
 #include "traces/recording/import/vertex_elements.hpp"
 
@@ -46,10 +47,6 @@ std::optional<Topology> topology_of(std::uint32_t mode) {
     default:
         return std::nullopt;
     }
-}
-
-std::uint32_t index_bytes(std::uint32_t type) {
-    return type == GL_UNSIGNED_BYTE ? 1 : type == GL_UNSIGNED_SHORT ? 2 : 4;
 }
 
 /// Triangles of what is none of the pipeline's topologies, each with its primitive's flat vertex last (OpenGL 2.1,
@@ -144,7 +141,7 @@ GeometryImport::Indices GeometryImport::read_indices(const record_stream::Geomet
         return indices;
     }
     const std::vector<std::byte>& bytes = blobs_.at(static_cast<std::size_t>(geometry.index_blob));
-    const std::uint32_t size = index_bytes(geometry.index_type);
+    const std::uint32_t size = record_stream::index_bytes(geometry.index_type);
     // Reading beyond a buffer gives 0 (OpenGL 4.5, section 6.4, of robust access).
     for (std::uint64_t i = 0; i < geometry.count; ++i) {
         const std::uint64_t at = geometry.index_offset + i * size;
@@ -173,9 +170,8 @@ void GeometryImport::set_indices(pipeline::Geometry& result, const record_stream
     result.index_count = static_cast<std::uint32_t>(indices.values.size());
     result.primitive_restart = indices.has_restart;
     if (!indices.rewritten) {
-        result.index_type = index_bytes(geometry.index_type) == 1   ? IndexType::u8
-                            : index_bytes(geometry.index_type) == 2 ? IndexType::u16
-                                                                    : IndexType::u32;
+        const std::uint32_t bytes = record_stream::index_bytes(geometry.index_type);
+        result.index_type = bytes == 1 ? IndexType::u8 : bytes == 2 ? IndexType::u16 : IndexType::u32;
         result.index_buffer = buffer_of(geometry.index_blob);
         result.index_offset = geometry.index_offset;
         return;
@@ -192,7 +188,7 @@ bool GeometryImport::add_array(pipeline::Geometry& result, const record_stream::
     const std::vector<std::byte>& bytes = blobs_.at(static_cast<std::size_t>(array.blob));
     const std::uint64_t elements =
         array.divisor == 0 ? result.vertex_count : (geometry.instances - 1) / array.divisor + 1;
-    const std::uint32_t size = gl_element_bytes(array);
+    const std::uint32_t size = record_stream::element_bytes(array);
     if (size == 0) {
         count_(fmt::format("vertex attributes of type 0x{:x}", array.type));
         return false;
@@ -221,7 +217,7 @@ bool GeometryImport::add_array(pipeline::Geometry& result, const record_stream::
             return false;
         }
         count_("vertex attributes in a type that there is not (kept as floats)");
-        attribute.components = static_cast<std::uint8_t>(gl_components(array));
+        attribute.components = static_cast<std::uint8_t>(record_stream::components_of(array));
         attribute.stride = attribute.components * 4U;
         attribute.buffer = add_buffer(as_floats(array, bytes, elements));
     }

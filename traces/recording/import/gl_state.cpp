@@ -169,6 +169,8 @@ bool draws_lines(GLenum mode) { return mode == GL_LINES || mode == GL_LINE_STRIP
 void set_depth(pipeline::RasterState& raster, const State& state, GLenum mode) {
     raster.depth.test = is_on(state, GL_DEPTH_TEST);
     raster.depth.clamp = is_on(state, GL_DEPTH_CLAMP);
+    raster.depth.range_near = static_cast<float>(value_in(state, GL_DEPTH_RANGE, 0));
+    raster.depth.range_far = static_cast<float>(value_in(state, GL_DEPTH_RANGE, 1));
     if (raster.depth.test) {
         raster.depth.write = value_in(state, GL_DEPTH_WRITEMASK) != 0;
         raster.depth.compare = compare_of(name_in(state, GL_DEPTH_FUNC));
@@ -186,7 +188,6 @@ void count_missing(const State& state, GLenum mode, const Count& count) {
     on(GL_SAMPLE_ALPHA_TO_COVERAGE, "alpha to coverage");
     on(GL_SAMPLE_COVERAGE, "glSampleCoverage");
     on(GL_SAMPLE_MASK, "glSampleMaski");
-    if (value_in(state, GL_DEPTH_RANGE, 0) != 0.0 || value_in(state, GL_DEPTH_RANGE, 1) != 1.0) count("glDepthRange");
     if (name_in(state, GL_CLIP_ORIGIN) != GL_LOWER_LEFT || name_in(state, GL_CLIP_DEPTH_MODE) != GL_NEGATIVE_ONE_TO_ONE)
         count("glClipControl");
     if (draws_lines(mode)) on(GL_LINE_SMOOTH, "smooth lines");

@@ -33,6 +33,9 @@ bool StreamImport::copies_touch_the_window() const {
         } else if (*tag == Tag::copy) {
             const auto copy = reader.record<record_stream::Copy>();
             if (windows.contains(copy.from.surface) || windows.contains(copy.to.surface)) return true;
+        } else if (*tag == Tag::blit) {
+            const auto blit = reader.record<record_stream::Blit>();
+            if (windows.contains(blit.from.surface) || windows.contains(blit.to.surface)) return true;
         }
     }
     return false;
@@ -64,6 +67,9 @@ void StreamImport::take(Tag tag, const StreamReader& reader) {
         break;
     case Tag::copy:
         take_copy(reader.record<record_stream::Copy>());
+        break;
+    case Tag::blit:
+        take_blit(reader.record<record_stream::Blit>());
         break;
     case Tag::frame:
         end_frame(reader.record<record_stream::Frame>());

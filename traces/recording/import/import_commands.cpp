@@ -2,8 +2,10 @@
 #include "traces/record_module/writer.hpp"
 #include "traces/recording/import/fixed_state.hpp"
 #include "traces/recording/import/stream_import.hpp"
+#include "traces/recording/recording_check.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <fmt/format.h>
 #include <iterator>
 
@@ -82,7 +84,10 @@ FixedFunctionProgram StreamImport::fixed_function_of(const record_stream::Draw& 
     for (const record_stream::Binding& binding : draw.bindings)
         if (const KnownSurface* known = surface(binding.surface); known != nullptr && binding.element < textures.size())
             textures.at(binding.element) = unit_texture_of(binding, known->record);
-    return fixed_function_program(fixed_function_state_of(draw.fixed.at(0), draw.state, textures, draw.geometry.mode));
+    FixedFunctionState state = fixed_function_state_of(draw.fixed.at(0), draw.state, textures, draw.geometry.mode);
+    if (const KnownSurface* const target = surface(draw.targets.colours.at(0).surface); target != nullptr)
+        state.alpha_steps = static_cast<float>(pipeline::alpha_steps(target->imported.surface.format));
+    return fixed_function_program(state);
 }
 
 StreamImport::Shading StreamImport::without_program(const record_stream::Draw& draw) {
@@ -202,6 +207,45 @@ void StreamImport::take_copy(const record_stream::Copy& copy) {
                         static_cast<std::int32_t>(copy.to_y + low)};
     result.rectangle = {static_cast<std::int32_t>(copy.x + left), static_cast<std::int32_t>(copy.y + low),
                         static_cast<std::uint32_t>(right - left), static_cast<std::uint32_t>(high - low)};
+    frame_.commands.emplace_back(std::move(result));
+}
+
+// Windows that are copied from or to have their bottom row first, as textures do.
+void StreamImport::take_blit(const record_stream::Blit& blit) {
+    const auto from = target_of(blit.from), to = target_of(blit.to);
+    if (!from || !to) {
+        count_(blit.call);
+        return;
+    }
+    const auto side = [](const std::array<std::int32_t, 4>& corners, std::size_t axis) {
+        const std::int64_t from_corner = corners.at(axis), to_corner = corners.at(axis + 2);
+        return std::pair(std::min(from_corner, to_corner), std::abs(to_corner - from_corner));
+    };
+    const auto rectangle = [&](const std::array<std::int32_t, 4>& corners) -> std::optional<pipeline::PixelRectangle> {
+        const auto [x, width] = side(corners, 0);
+        const auto [y, height] = side(corners, 1);
+        constexpr std::int64_t most = limits::largest_blit;
+        if (std::max({width, height, std::abs(x), std::abs(y)}) > most) return std::nullopt;
+        return pipeline::PixelRectangle{static_cast<std::int32_t>(x), static_cast<std::int32_t>(y),
+                                        static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
+    };
+    const auto source = rectangle(blit.source), destination = rectangle(blit.destination);
+    if (!source || !destination) {
+        count_(fmt::format("{} of more than {} pixels a side", blit.call, limits::largest_blit));
+        return;
+    }
+    if (std::min({source->width, source->height, destination->width, destination->height}) == 0) return;
+    const auto backwards = [](const std::array<std::int32_t, 4>& corners, std::size_t axis) {
+        return corners.at(axis + 2) < corners.at(axis);
+    };
+    RecordedBlit result{blit.call, *from, *to, *source, *destination};
+    result.mirrored_x = backwards(blit.source, 0) != backwards(blit.destination, 0);
+    result.mirrored_y = backwards(blit.source, 1) != backwards(blit.destination, 1);
+    result.linear = blit.linear;
+    if (blit.scissor_test)
+        result.scissor = pipeline::PixelRectangle{blit.scissor[0], blit.scissor[1],
+                                                  static_cast<std::uint32_t>(std::max(blit.scissor[2], 0)),
+                                                  static_cast<std::uint32_t>(std::max(blit.scissor[3], 0))};
     frame_.commands.emplace_back(std::move(result));
 }
 

@@ -77,6 +77,7 @@ class StreamImport {
     void take_clear(const record_stream::Clear& clear);
     /// As much of it as lies within both surfaces.
     void take_copy(const record_stream::Copy& copy);
+    void take_blit(const record_stream::Blit& blit);
 
     static Recording empty_recording() {
         Recording recording;

@@ -194,15 +194,16 @@ std::optional<ImportedSurface> import_surface(const record_stream::Surface& surf
     }
     result.levels.clear();
     for (const record_stream::SurfaceLevel& level : surface.levels) {
-        std::vector<std::byte>& bytes = result.levels.emplace_back();
+        pipeline::SharedBytes& held = result.levels.emplace_back();
         if (level.blob < 0 || result.samples > 1) continue;
-        bytes = blobs.at(static_cast<std::size_t>(level.blob));
+        std::vector<std::byte> bytes = blobs.at(static_cast<std::size_t>(level.blob));
         turn_depths(bytes, *format);
         if (top_row_first && imported.window)
             turn_rows_over(bytes, std::size_t{level.width} * pipeline::bytes_of(*format));
         const std::uint64_t expected = level_bytes(result, static_cast<std::uint32_t>(result.levels.size() - 1));
-        if (bytes.size() > expected) bytes.resize(expected); // a buffer may end within a texel
-        if (bytes.size() < expected) bytes.clear();
+        if (bytes.size() < expected) continue;
+        bytes.resize(expected); // a buffer may end within a texel
+        held = std::move(bytes);
     }
     return imported;
 }

@@ -1,8 +1,6 @@
 #include "traces/recording/import/vertex_elements.hpp"
 
-#include <GL/gl.h>
-
-#include <GL/glext.h>
+#include "traces/record_module/element_types.hpp"
 
 #include <algorithm>
 #include <array>
@@ -13,31 +11,6 @@ namespace traces::recorded {
 using pipeline::ComponentType;
 
 namespace {
-
-std::uint32_t gl_type_bytes(std::uint32_t type) {
-    switch (type) {
-    case GL_BYTE:
-    case GL_UNSIGNED_BYTE:
-        return 1;
-    case GL_SHORT:
-    case GL_UNSIGNED_SHORT:
-    case GL_HALF_FLOAT:
-        return 2;
-    case GL_INT:
-    case GL_UNSIGNED_INT:
-    case GL_FLOAT:
-    case GL_FIXED:
-        return 4;
-    case GL_DOUBLE:
-        return 8;
-    default:
-        return 0;
-    }
-}
-
-bool is_packed_type(std::uint32_t type) {
-    return type == GL_INT_2_10_10_10_REV || type == GL_UNSIGNED_INT_2_10_10_10_REV;
-}
 
 template <class T>
 double number_at(const std::byte* bytes) {
@@ -87,14 +60,6 @@ StoredNumber packed_number(std::uint32_t type, const std::byte* bytes, std::uint
 
 } // namespace
 
-std::uint32_t gl_components(const record_stream::Array& array) {
-    return array.components == GL_BGRA ? 4 : std::clamp(array.components, 1U, 4U);
-}
-
-std::uint32_t gl_element_bytes(const record_stream::Array& array) {
-    return is_packed_type(array.type) ? 4 : gl_type_bytes(array.type) * gl_components(array);
-}
-
 std::optional<ComponentType> component_type_of(const record_stream::Array& array) {
     if (array.components == GL_BGRA) return std::nullopt;
     switch (array.type) {
@@ -125,7 +90,7 @@ std::optional<ComponentType> component_type_of(const record_stream::Array& array
 
 std::vector<std::byte> as_floats(const record_stream::Array& array, std::span<const std::byte> bytes,
                                  std::uint64_t elements) {
-    const std::uint32_t components = gl_components(array);
+    const std::uint32_t components = record_stream::components_of(array);
     constexpr std::array<std::uint32_t, 4> blue_first{2, 1, 0, 3};
     std::vector<float> values;
     values.reserve(elements * components);
@@ -133,9 +98,10 @@ std::vector<std::byte> as_floats(const record_stream::Array& array, std::span<co
         const std::byte* const element = bytes.data() + array.offset + i * array.stride;
         for (std::uint32_t c = 0; c < components; ++c) {
             const std::uint32_t source = array.components == GL_BGRA ? blue_first.at(c) : c;
-            const StoredNumber number = is_packed_type(array.type)
-                                            ? packed_number(array.type, element, source)
-                                            : stored_number(array.type, element + source * gl_type_bytes(array.type));
+            const StoredNumber number =
+                record_stream::is_packed(array.type)
+                    ? packed_number(array.type, element, source)
+                    : stored_number(array.type, element + std::size_t{source} * record_stream::type_bytes(array.type));
             values.push_back(
                 static_cast<float>(array.normalized ? std::max(number.value / number.largest, -1.0) : number.value));
         }

@@ -10,10 +10,6 @@
 
 namespace traces::recorded {
 
-std::uint32_t gl_components(const record_stream::Array& array);
-/// 0: a type that is not known.
-std::uint32_t gl_element_bytes(const record_stream::Array& array);
-
 /// The pipeline's type with the same bytes and the same meaning.
 std::optional<pipeline::ComponentType> component_type_of(const record_stream::Array& array);
 

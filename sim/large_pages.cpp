@@ -16,7 +16,8 @@ void prefer_large_pages(const void* begin, std::size_t bytes) {
     const auto address = reinterpret_cast<std::uintptr_t>(begin);
     const std::uintptr_t first = (address + large_page - 1) / large_page * large_page;
     const std::uintptr_t end = (address + bytes) / large_page * large_page;
-    if (first < end) ::madvise(reinterpret_cast<void*>(first), end - first, MADV_HUGEPAGE);
+    auto* const bytes_of_block = const_cast<std::byte*>(static_cast<const std::byte*>(begin));
+    if (first < end) ::madvise(bytes_of_block + (first - address), end - first, MADV_HUGEPAGE);
 }
 
 std::shared_ptr<std::byte[]> large_block(std::size_t bytes) {

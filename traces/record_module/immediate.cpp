@@ -63,7 +63,8 @@ void record_primitives(PreparedDraw prepared, const Primitives& primitives) {
         if (event.slot != slot_vertex) continue;
         for (const Array& array : geometry.arrays) {
             const auto& value = current.at(feeding(array.slot));
-            vertices.insert(vertices.end(), value.begin(), value.begin() + array.components * (array.type != 0));
+            const std::size_t given = array.type == 0 ? 0 : array.components;
+            vertices.insert(vertices.end(), value.begin(), value.begin() + given);
         }
         ++geometry.count;
     }

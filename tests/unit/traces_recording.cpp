@@ -1,6 +1,6 @@
 // Recorded frames as a draw trace: what is written is read, as text it says everything, and what is wrong is named.
 #include "sim/check.hpp"
-#include "tests/support/program_run.hpp"
+#include "tests/support/recorded_file.hpp"
 #include "tests/support/recordings.hpp"
 #include "tests/support/trace_files.hpp"
 #include "traces/recording/recording_check.hpp"
@@ -13,25 +13,12 @@
 
 namespace recording_test {
 
-using ropsim_test::TemporaryFolder;
 using support::Bytes;
 using support::Chunk;
 using traces::Recording;
 namespace chunk = traces::rtrace::chunk;
 
-class Recorded : public ::testing::Test {
-  protected:
-    std::filesystem::path write(const Recording& recording, const std::string& name = "x.rtrace") {
-        traces::write_trace(support::recorded_trace(recording), folder_.path() / name);
-        return folder_.path() / name;
-    }
-    std::string dump(const std::filesystem::path& file) {
-        std::string text;
-        for (const traces::TraceLine& line : traces::dump_trace(file)) text += line.text() + "\n";
-        return text;
-    }
-    TemporaryFolder folder_;
-};
+class Recorded : public support::RecordedFile {};
 
 void expect_equal(const pipeline::Resources& one, const pipeline::Resources& two) {
     ASSERT_EQ(one.buffers.size(), two.buffers.size());

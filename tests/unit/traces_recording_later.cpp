@@ -1,6 +1,6 @@
 // What recorded traces say beside what all of them have: depth ranges of states, and blits.
 #include "sim/check.hpp"
-#include "tests/support/program_run.hpp"
+#include "tests/support/recorded_file.hpp"
 #include "tests/support/recordings.hpp"
 #include "tests/support/trace_files.hpp"
 #include "traces/recording/recording_check.hpp"
@@ -13,24 +13,11 @@
 
 namespace recording_later_test {
 
-using ropsim_test::TemporaryFolder;
 using support::Chunk;
 using traces::Recording;
 namespace chunk = traces::rtrace::chunk;
 
-class RecordedLater : public ::testing::Test {
-  protected:
-    std::filesystem::path write(const Recording& recording, const std::string& name = "x.rtrace") {
-        traces::write_trace(support::recorded_trace(recording), folder_.path() / name);
-        return folder_.path() / name;
-    }
-    std::string dump(const std::filesystem::path& file) {
-        std::string text;
-        for (const traces::TraceLine& line : traces::dump_trace(file)) text += line.text() + "\n";
-        return text;
-    }
-    TemporaryFolder folder_;
-};
+class RecordedLater : public support::RecordedFile {};
 
 traces::RecordedBlit some_blit() {
     traces::RecordedBlit blit;
